@@ -264,6 +264,15 @@ def cells(case: meshes.Case, way: Way, count: int, exact: bool = False) -> Itera
     return [*answer, *found.locate(points), *surface(found.centers(density_of(case), threads=way.threads))]
 
 
+@asked(GOOD)
+def baked_cells(case: meshes.Case, way: Way) -> Iterable[object]:
+    sites = sb.sample(case.mesh, 8, seed=6, one_per_component=True)
+    found = sb.geodesic_voronoi(graph_of(case, way), sites, threads=way.threads, device=way.device)
+    uv = np.random.default_rng(1).random((3 * case.mesh.face_count, 2))
+    image = sb.bake_cells(found, uv, values=uv, size=(60, 40), margin=2, allow_overlaps=True, threads=way.threads)
+    return all_of(image, "triangle cell edge_distance local_uv values overlapping")
+
+
 @asked(
     LARGE,
     strict={"policy": "strict", "count": 12},

@@ -10,6 +10,7 @@
 
 namespace saddleback::bindings {
 
+void bind_bake_cells(py::module_& m);
 void bind_charts(py::module_& m);
 void bind_check(py::module_& m);
 void bind_devices(py::module_& m);
@@ -145,6 +146,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_hausdorff_distance(m);
   bind_fields(m);
   bind_tessellation(m);
+  bind_bake_cells(m);
   bind_relaxation(m);
   bind_device_voronoi_2d(m);
   bind_voronoi_2d(m);

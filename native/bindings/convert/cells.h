@@ -10,4 +10,12 @@ namespace saddleback::bindings {
 /// CUDA device found the vertices' nearest sites.
 py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph, bool by_cuda);
 
+/// A diagram and the graph whose mesh it lies on; both stay as long as the Python object.
+struct CellsIn {
+  const GeodesicVoronoi& diagram;
+  const SaddleVertexGraph& graph;
+};
+/// The cells of an argument. \throw InputError when it is anything else.
+CellsIn as_cells(const py::object& value, const char* argument);
+
 }  // namespace saddleback::bindings

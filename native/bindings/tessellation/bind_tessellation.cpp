@@ -300,6 +300,13 @@ py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph, bool b
   return py::cast(Cells{std::move(diagram), graph, by_cuda});
 }
 
+CellsIn as_cells(const py::object& value, const char* argument) {
+  if (!py::isinstance<Cells>(value))
+    throw InputError(message(argument, ": wanted a GeodesicVoronoi, got ", std::string(py::str(py::type::of(value)))));
+  const auto& cells = py::cast<const Cells&>(value);
+  return {cells.diagram, py::cast<const SaddleVertexGraph&>(cells.graph)};
+}
+
 void bind_tessellation(py::module_& m) {
   py::class_<VoronoiEdge>(m, "VoronoiEdge", py::module_local(), "The boundary between two cells, or a part of it.")
       .def_property_readonly(

@@ -39,6 +39,7 @@
 #include "saddleback/shapes/shape.h"
 #include "saddleback/support/device_times.h"
 #include "saddleback/support/large_array.h"
+#include "saddleback/tessellation/bake_cells.h"
 #include "saddleback/tessellation/cell_cache.h"
 #include "saddleback/tessellation/centroidal_voronoi.h"
 #include "saddleback/tessellation/dual_mesh.h"

@@ -20,14 +20,6 @@ constexpr double k_at_vertex = 1e-10;
 // The share of the time until all is measured; the results are then sorted and written.
 constexpr double k_measured = 0.97;
 
-/// The center of a map: a vertex where it is as good as one.
-SurfacePoint center_of(const SurfacePoint& given) {
-  SurfacePoint center{given.face, normalized_barycentric(given.barycentric)};
-  for (int i = 0; i < 3; ++i)
-    if (center.barycentric[i] >= 1 - k_at_vertex) center.barycentric = Vec3::Unit(i);
-  return center;
-}
-
 /// An angle of -pi to pi about a vertex as one of 0 to its total angle, scaled. Rounding may put a direction along the
 /// border before it.
 double from_zero(const Mesh& mesh, Index vertex, double angle) {
@@ -54,18 +46,30 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& center, doubl
   return result;
 }
 
+SurfacePoint center_of_map(const SurfacePoint& given) {
+  SurfacePoint center{given.face, normalized_barycentric(given.barycentric)};
+  for (int i = 0; i < 3; ++i)
+    if (center.barycentric[i] >= 1 - k_at_vertex) center.barycentric = Vec3::Unit(i);
+  return center;
+}
+
+void send_rays_about(WavefrontDistances& field, const DirectionsAtPoint& center, double radius,
+                     const WatchedPlaces* places, const JobStage& stage, const ReportRays& report) {
+  field.begin(places);
+  if (center.vertex() != k_none) field.add_source(center.vertex(), {0, 0, 0, false});
+  const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
+  center.emit(field, window, center.begin(), center.begin() + center.total_angle());
+  field.run({.radius = radius}, stage, report);
+}
+
 LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& center, double radius, const WatchedPlaces* places,
                  PlaceDistances& found, const JobStage& stage) {
   const Mesh& mesh = graph.mesh();
-  const SurfacePoint point = center_of(center);
+  const SurfacePoint point = center_of_map(center);
   WavefrontDistances field(graph.unfolding());
-  field.begin(places);
   const DirectionsAtPoint star(graph.unfolding(), point);
-  if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
-  const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
-  star.emit(field, window, star.begin(), star.begin() + star.total_angle());
   const JobStage measuring = stage.part(0, k_measured);
-  field.run({.radius = radius}, stage, [&](double distance, Index vertices) {
+  send_rays_about(field, star, radius, places, stage, [&](double distance, Index vertices) {
     measuring.update(
         std::max(distance / radius * distance / radius, static_cast<double>(vertices) / mesh.vertex_count()));
   });
@@ -95,7 +99,7 @@ LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& center, dou
 
 SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& given, std::span<const Vec2> uv, int threads, Job* job) {
   check_surface_point(mesh, given, "center");
-  const SurfacePoint center = center_of(given);
+  const SurfacePoint center = center_of_map(given);
   if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
   const auto count = static_cast<Index>(uv.size());
   for (Index i = 0; i < count; ++i) {

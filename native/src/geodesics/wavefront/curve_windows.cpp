@@ -44,24 +44,17 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
   feet.clear();
   field_.begin(places);
   const auto segments = curve.segments();
-  for (const CurveSegment& s : segments) field_.barriers().add(s.face, s.begin, s.end);
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    stage.check();
-    for (const bool at_begin : {true, false}) {
-      const CurveSegment& s = segments[i];
-      const Index vertex = vertex_at(mesh_, end_point(s, at_begin));
-      if (vertex != k_none) field_.add_source(vertex, {0, at_begin ? s.start : s.start + s.length, 0, false});
-    }
-  }
+  stage.check();
+  add_sources(curve);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     stage.update(static_cast<double>(i) / static_cast<double>(segments.size()));
     if (places) reach_places(segments[i]);
     emit_from_segment(segments[i], 1);
     emit_from_segment(segments[i], -1);
-    if (i > 0) emit_from_bend(segments[i - 1], segments[i], segments[i].start);
+    if (i > 0) emit_from_bend(segments[i - 1], segments[i], segments[i].start, 0);
   }
   if (curve.closed()) {
-    emit_from_bend(segments.back(), segments.front(), 0);
+    emit_from_bend(segments.back(), segments.front(), 0, 0);
   } else {
     emit_from_end(segments.front(), true, 0);
     emit_from_end(segments.back(), false, curve.length());
@@ -76,6 +69,40 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
     if (curve.closed() && along >= curve.length() * (1 - k_on_curve)) along = 0;  // the end is the start
     feet.push_back({vertex, distance, along, static_cast<std::int8_t>(side), label.shadowed});
   }
+}
+
+/// No ray crosses the curve, whose vertices are where rays set out.
+void CurveWindows::add_sources(const SurfaceCurve& curve) {
+  for (const CurveSegment& s : curve.segments()) {
+    field_.barriers().add(s.face, s.begin, s.end);
+    for (const bool at_begin : {true, false}) {
+      const Index vertex = vertex_at(mesh_, end_point(s, at_begin));
+      if (vertex != k_none) field_.add_source(vertex, {0, at_begin ? s.start : s.start + s.length, 0, false});
+    }
+  }
+}
+
+void CurveWindows::from_border(std::span<const BorderPart> border, const RayLimits& limits, const WatchedPlaces* places,
+                               const JobStage& stage) {
+  field_.begin(places);
+  for (const BorderPart& part : border) {
+    stage.check();
+    add_sources(*part.curve);
+  }
+  for (const BorderPart& part : border) {
+    stage.check();
+    const auto segments = part.curve->segments();
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      if (places) reach_places(segments[i]);
+      emit_from_segment(segments[i], part.side);
+      if (i > 0) emit_from_bend(segments[i - 1], segments[i], 0, part.side);
+    }
+    if (part.curve->closed())
+      emit_from_bend(segments.back(), segments.front(), 0, part.side);
+    else
+      emit_from_corners(part, border);
+  }
+  field_.run(limits, stage);
 }
 
 /// Places in the segment's own face; where an end lies on an edge, in the face behind it as well.
@@ -145,14 +172,14 @@ void CurveWindows::emit_from_segment(const CurveSegment& segment, int side) {
 }
 
 /// Emits from a bend: on the side where the curve turns away, rays from the bend fill the wedge between the segments'
-/// own.
-void CurveWindows::emit_from_bend(const CurveSegment& in, const CurveSegment& out, double along) {
+/// own. On one side only, or on both for 0.
+void CurveWindows::emit_from_bend(const CurveSegment& in, const CurveSegment& out, double along, int only) {
   const DirectionsAtPoint star(unfolding_, end_point(out, true));
   const double ahead = direction_of(mesh_, star, out, true);
   const double back = direction_of(mesh_, star, in, false);
   const double first = star.begin(), total = star.total_angle(), last = first + total;
   const auto emit = [&](double begin, double end, int side) {
-    if (begin <= end) star.emit(field_, rays_from_foot(along, side), begin, end);
+    if (begin <= end && side != -only) star.emit(field_, rays_from_foot(along, side), begin, end);
   };
   if (star.is_round()) {
     const double left = back >= ahead ? back - ahead : back - ahead + total;
@@ -166,6 +193,46 @@ void CurveWindows::emit_from_bend(const CurveSegment& in, const CurveSegment& ou
   emit(low + k_right_angle, high - k_right_angle, left_between ? 1 : -1);
   emit(first, low - k_right_angle, left_between ? -1 : 1);
   emit(high + k_right_angle, last, left_between ? -1 : 1);
+}
+
+/// Emits from where a part of a border starts, into the wedge up to the next part that ends there; and, where one ends
+/// at the mesh's boundary, into the wedge before it.
+void CurveWindows::emit_from_corners(const BorderPart& part, std::span<const BorderPart> border) {
+  struct Leaving {
+    const CurveSegment& segment;
+    bool at_begin;
+  };
+  const auto leaving = [](const BorderPart& from, bool at_start) -> Leaving {
+    const bool at_begin = at_start == (from.side > 0);
+    const auto segments = from.curve->segments();
+    return {at_begin ? segments.front() : segments.back(), at_begin};
+  };
+  const auto emit = [&](const DirectionsAtPoint& star, double begin, double end) {
+    if (begin <= end) star.emit(field_, rays_from_foot(0, 0), begin, end);
+  };
+  for (const bool at_start : {true, false}) {
+    const auto [segment, at_begin] = leaving(part, at_start);
+    const DirectionsAtPoint star(unfolding_, end_point(segment, at_begin));
+    if (!at_start && star.is_round()) continue;
+    const double own = direction_of(mesh_, star, segment, at_begin), total = star.total_angle();
+    double wedge = star.is_round() ? total : at_start ? star.begin() + total - own : own - star.begin();
+    bool meets = false;
+    for (const BorderPart& other : border) {
+      if (at_start ? other.end != part.start : other.start != part.end) continue;
+      const auto [next, next_at_begin] = leaving(other, !at_start);
+      double turn = direction_of(mesh_, star, next, next_at_begin) - own;
+      if (!at_start) turn = -turn;
+      if (turn < 0 && star.is_round()) turn += total;
+      if (turn < 0) continue;
+      wedge = std::min(wedge, turn);
+      meets = true;
+    }
+    const double free = meets ? k_right_angle : 0;  // of the wedge at the other part, whose own rays fill it
+    if (at_start)
+      emit(star, own + k_right_angle, own + wedge - free);
+    else if (!meets)
+      emit(star, own - wedge, own - k_right_angle);
+  }
 }
 
 /// Emits from an end: beyond an end all rays come from it; the curve run straight on tells left from right.

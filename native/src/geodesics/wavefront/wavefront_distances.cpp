@@ -254,6 +254,8 @@ void WavefrontDistances::drain(BlockQueue<RayWindow>::Block* block, const JobSta
         if (distances_[vertex] == window.offset) due_.push_back(vertex);
         continue;
       }
+      if (!places_.empty())  // also those before a barrier
+        window.rays == Rays::perpendicular ? reach_places<Parallel>(window) : reach_places<Radial>(window);
       barriers_.for_each_free_part(window, RayBarriers::Side::entered, [this](const RayWindow& part) {
         part.rays == Rays::perpendicular ? propagate<Parallel>(part) : propagate<Radial>(part);
       });
@@ -323,19 +325,25 @@ bool WavefrontDistances::circles_tip(const RayWindow& w) const {
          (w.b0 == 0 && circles(tip_tangents_[mesh_.from(w.halfedge)], -to_start.x(), to_start.y()));
 }
 
+/// Tells whether an end of the edge offers all of the window a shorter way.
+template <class Front>
+bool WavefrontDistances::is_beaten(const RayWindow& window) const {
+  const Index h = window.halfedge;
+  const double at_from = distances_[mesh_.from(h)] * k_slack, at_to = distances_[mesh_.to(h)] * k_slack;
+  return Front::is_less(at_from + window.b1, window, window.b1) ||
+         Front::is_less(at_to + (mesh_.length(h) - window.b0), window, window.b0);
+}
+
 template <class Front>
 void WavefrontDistances::propagate(const RayWindow& window) {
   const Index h = window.halfedge;
   const double base = mesh_.length(h);
   const Vec2& apex = unfolding_.apex(h);
+  if (is_beaten<Front>(window)) return;
   const double at_from = distances_[mesh_.from(h)] * k_slack, at_to = distances_[mesh_.to(h)] * k_slack;
-  if (Front::is_less(at_from + window.b1, window, window.b1) ||
-      Front::is_less(at_to + (base - window.b0), window, window.b0))
-    return;
   if (!tip_tangents_.empty() && circles_tip<Front>(window)) return;
   const Vec2 ray = Front::ray(window, apex);
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
-  if (!places_.empty()) reach_places(window);
   const double reach = Front::distance(window, ray, apex);
   // Where the ray to the apex crosses the half-edge.
   const double split = apex.x() - ray.x() * (apex.y() / ray.y());
@@ -382,18 +390,24 @@ void WavefrontDistances::reach_apex(const RayWindow& window, const Vec2& ray, do
 }
 
 /// Reaches, of the places in the face that the window enters those that its rays meet.
+template <class Front>
 void WavefrontDistances::reach_places(const RayWindow& window) {
+  if (is_beaten<Front>(window)) return;
   const Index h = window.halfedge;
-  const double base = mesh_.length(h), tolerance = k_at_border * base;
+  const double base = mesh_.length(h), begin = window.b0 - k_at_border * base, end = window.b1 + k_at_border * base;
+  const Vec2 apex = unfolding_.apex(h);
+  const auto to = static_cast<int>(Mesh::next(h) % 3), opposite = static_cast<int>(Mesh::prev(h) % 3);
+  const std::span<const double> known = places_.values();
   places_.places().in_face(Mesh::face_of(h), [&](Index index, const Vec3& weights) {
-    const Vec2 place = weights[Mesh::next(h) % 3] * Vec2(base, 0) + weights[Mesh::prev(h) % 3] * unfolding_.apex(h);
-    const bool is_parallel = window.rays == Rays::perpendicular;
-    const Vec2 ray = is_parallel ? window.source : Vec2(place - window.source);
+    const Vec2 place(weights[to] * base + weights[opposite] * apex.x(), weights[opposite] * apex.y());
+    const Vec2 ray = Front::ray(window, place);
     if (ray.y() <= 0) return;
-    const double crossing = place.x() - ray.x() * (place.y() / ray.y());
-    if (crossing < window.b0 - tolerance || crossing > window.b1 + tolerance) return;
-    const double label = window.value + (window.rays == Rays::from_point ? std::atan2(ray.y(), ray.x()) : 0);
-    places_.offer(index, window.offset + (is_parallel ? window.source.dot(place) : ray.norm()), label);
+    // Where the ray crosses the half-edge, times ray.y().
+    const double crossing = place.x() * ray.y() - ray.x() * place.y();
+    if (crossing < begin * ray.y() || crossing > end * ray.y()) return;
+    const double distance = Front::distance(window, ray, place);
+    if (distance >= known[index]) return;
+    places_.offer(index, distance, window.value + (window.rays == Rays::from_point ? std::atan2(ray.y(), ray.x()) : 0));
   });
 }
 

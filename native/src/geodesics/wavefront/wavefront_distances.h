@@ -59,6 +59,8 @@ class WavefrontDistances {
   /// Vertices with their final labels, in any order; those that were reached within the limits.
   const std::vector<Index>& settled() const { return settled_; }
   const RayLabel& label(Index vertex) const { return vertices_[vertex].label; }
+  /// Of any vertex: infinity where no ray came.
+  double distance(Index vertex) const { return distances_[vertex]; }
   PlaceDistances& places() { return places_; }
   const PlaceDistances& places() const { return places_; }
 
@@ -95,6 +97,8 @@ class WavefrontDistances {
   template <class Front>
   bool circles_tip(const RayWindow& window) const;
   template <class Front>
+  bool is_beaten(const RayWindow& window) const;
+  template <class Front>
   void propagate(const RayWindow& window);
   template <class Front>
   void reach_apex(const RayWindow& window, const Vec2& ray, double split, double reach);
@@ -102,6 +106,7 @@ class WavefrontDistances {
   void add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex);
   template <class Front>
   RayWindow seen_from_side(const RayWindow& parent, RayWindow child, const Side& side) const;
+  template <class Front>
   void reach_places(const RayWindow& window);
   bool is_too_far(const RayWindow& window, double key) const;
 
