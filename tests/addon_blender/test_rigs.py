@@ -493,6 +493,20 @@ def test_modifiers_are_told_apart_from_the_mesh_that_repair_can_mend():
     assert bpy.ops.saddleback.tessellate(count=3) == {"FINISHED"}
 
 
+def test_a_fault_of_the_mesh_itself_is_repaired_below_its_modifiers():
+    mesh = bpy.data.meshes.new("Bow tie")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (-1, 0, 0), (-1, -1, 0)], [], [(0, 1, 2), (0, 3, 4)])
+    item = bpy.data.objects.new("Bow tie", mesh)
+    bpy.context.collection.objects.link(item)
+    item.modifiers.new("Smooth", "SUBSURF")
+    activate(item)
+    with pytest.raises(RuntimeError, match="fan; press Repair in the Saddleback tab, then run again"):
+        bpy.ops.saddleback.tessellate(count=3, use_modifiers=True)
+    assert jobs.state.needs_repair == item.name
+    assert bpy.ops.saddleback.repair() == {"FINISHED"} and not jobs.state.needs_repair
+    assert bpy.ops.saddleback.tessellate(count=3, use_modifiers=True) == {"FINISHED"}
+
+
 def test_multiresolution_in_sculpt_mode_is_not_read_as_its_cage():
     item = sphere("Body", 2)
     item.modifiers.new("Sculpt", "MULTIRES")

@@ -11,6 +11,7 @@ from typing import Any
 import bpy
 
 from .. import jobs, rollback
+from ..bridge.inputs.mesh_in import read_surface
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
 from ..bridge.outputs import hand_edits
 from ..bridge.outputs.following import Follower
@@ -308,7 +309,7 @@ class SurfaceOperator(PolledOperator):
         if isinstance(error, sb.MeshError):
             text = text.removesuffix("; saddleback.repair mends this")
             source = bpy.data.objects.get(name)
-            if source is not None and getattr(self, "use_modifiers", False) and not has_own_faces(context, source):
+            if source is not None and getattr(self, "use_modifiers", False) and _is_made_by_modifiers(context, source):
                 text += (
                     "; its modifiers make this: apply them (Object > Apply > Visual Geometry to Mesh), press Repair "
                 )
@@ -338,6 +339,18 @@ class SurfaceOperator(PolledOperator):
             context.workspace.status_text_set(None)
         jobs.redraw(context)
         self._task = None
+
+
+def _is_made_by_modifiers(context: bpy.types.Context, source: bpy.types.Object) -> bool:
+    """Tells whether a fault of what is seen is none of the object's own mesh, which Repair could mend."""
+    if has_own_faces(context, source):
+        return False
+    own = read_surface(source, source.data, check=False)
+    try:
+        native.load().Mesh(own.vertices, own.triangles)
+    except native.load().MeshError:
+        return False
+    return True
 
 
 def _selected(context: bpy.types.Context) -> list[str]:
