@@ -3,6 +3,7 @@
 from saddleback import _interpreter  # noqa: F401  (first: before the compiled module)
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
+    BakedCells,
     BentCopies,
     Cancelled,
     CellCache,
@@ -58,6 +59,7 @@ from saddleback._saddleback import (
     Voronoi2d,
     VoronoiEdge,
     __version__,
+    bake_cells,
     border_edges,
     cell_boundary,
     cell_boundary_distance,
@@ -104,6 +106,7 @@ from saddleback.quality_plot import quality_plot
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
 
 __all__ = [
+    "BakedCells",
     "BentCopies",
     "Cancelled",
     "CellCache",
@@ -161,6 +164,7 @@ __all__ = [
     "Voronoi2d",
     "VoronoiEdge",
     "__version__",
+    "bake_cells",
     "blend_by_distance",
     "border_edges",
     "cell_boundary",

@@ -526,6 +526,42 @@ def refine_to_cell_boundary(
 def geodesic_center(
     graph: SaddleVertexGraph, points: _Points, weights: ArrayLike | None = None, *, job: Job | None = None
 ) -> SurfacePoints: ...
+
+@final
+class BakedCells:
+    @property
+    def triangle(self) -> _Indices: ...
+    @property
+    def cell(self) -> _Indices: ...
+    @property
+    def edge_distance(self) -> NDArray[np.float32] | None: ...
+    @property
+    def local_uv(self) -> NDArray[np.float32] | None: ...
+    @property
+    def values(self) -> NDArray[np.float32] | None: ...
+    @property
+    def overlapping(self) -> _Indices: ...
+    @property
+    def without_area(self) -> _Indices: ...
+    @property
+    def outside(self) -> _Indices: ...
+
+def bake_cells(
+    cells: GeodesicVoronoi,
+    uv: ArrayLike,
+    faces: ArrayLike | None = None,
+    *,
+    values: ArrayLike | None = None,
+    axes: ArrayLike | None = None,
+    size: tuple[SupportsIndex, SupportsIndex] = (1024, 1024),
+    tile: tuple[SupportsIndex, SupportsIndex] = (0, 0),
+    margin: SupportsIndex = 16,
+    edge_distance: bool = True,
+    local_uv: bool = True,
+    allow_overlaps: bool = False,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> BakedCells: ...
 def geodesic_voronoi(
     graph: SaddleVertexGraph,
     sites: _Points,
