@@ -180,7 +180,8 @@ void Insertion::make_pending_known() {
   pending_.clear();
 }
 
-std::vector<Outcome> Insertion::insert(std::vector<Candidate> candidates, const JobStage& stage) {
+std::vector<Outcome> Insertion::insert(std::vector<Candidate> candidates, const JobStage& stage,
+                                       std::span<const std::uint64_t> face_order) {
   std::vector<Outcome> outcomes(candidates.size(), Outcome::not_wanted);
   std::vector<Index> order(candidates.size());
   std::iota(order.begin(), order.end(), 0);
@@ -200,9 +201,17 @@ std::vector<Outcome> Insertion::insert(std::vector<Candidate> candidates, const 
     }
     ++batch_;
     attempts_.resize(std::max(attempts_.size(), end - begin));
+    std::vector<Index> turns(end - begin);
+    std::iota(turns.begin(), turns.end(), 0);
+    if (!face_order.empty()) {
+      std::sort(turns.begin(), turns.end(), [&](Index a, Index b) {
+        return face_order[candidates[order[begin + a]].center.face] <
+               face_order[candidates[order[begin + b]].center.face];
+      });
+    }
     parallel_for(static_cast<Index>(end - begin), threads_, k_share, [&](Index i, int thread) {
       stage.check();
-      attempt(candidates[order[begin + i]], attempts_[i], thread);
+      attempt(candidates[order[begin + turns[i]]], attempts_[turns[i]], thread);
     });
     std::size_t laid = 0, in_vain = 0;  // in vain: mapped, and turned away for another of the batch
     for (std::size_t i = begin; i < end; ++i) {

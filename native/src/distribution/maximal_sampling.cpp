@@ -15,6 +15,8 @@
 #include "saddleback/mesh/trace.h"
 
 #include "distribution/edge_distances.h"
+#include "mesh/tables/hilbert.h"
+#include "mesh/tables/key_order.h"
 #include "mesh/tables/outgoing.h"
 #include "support/random_numbers.h"
 #include "support/threads/parallel.h"
@@ -453,9 +455,13 @@ void MaximalSampling::round(const JobStage& stage) {
   std::vector<Look> looks(open_.size());
   const JobStage looking = stage.part(0, 0.5);
   std::vector<Neighbors> near(static_cast<std::size_t>(thread_count(options_->threads)));
-  parallel_for(static_cast<Index>(open_.size()), options_->threads, 64, [&](Index i, int thread) {
-    if (i % 1024 == 0) looking.update(static_cast<double>(i) / static_cast<double>(open_.size()));
-    look(open_[i], i, near[thread], looks[i]);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(open_.size());
+  for (const OpenCell& open : open_) keys.push_back(face_order_[open.cell.face]);
+  const std::vector<Index> turns = order_of(keys, options_->threads, looking);
+  parallel_for(static_cast<Index>(open_.size()), options_->threads, 64, [&](Index k, int thread) {
+    if (k % 1024 == 0) looking.update(static_cast<double>(k) / static_cast<double>(open_.size()));
+    look(open_[turns[k]], turns[k], near[thread], looks[turns[k]]);
   });
   std::vector<Candidate> candidates;
   for (Index i = 0; i < static_cast<Index>(open_.size()); ++i) {
@@ -473,7 +479,7 @@ void MaximalSampling::round(const JobStage& stage) {
       candidates.push_back({order(view.center, key), kind, i, view.center, scale, true});
     }
   }
-  const std::vector<Outcome> outcomes = insertion_->insert(candidates, stage.part(0.5, 1));
+  const std::vector<Outcome> outcomes = insertion_->insert(candidates, stage.part(0.5, 1), face_order_);
   std::vector<std::uint8_t> is_stuck(open_.size(), 0);
   inserted_in_round_ = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
@@ -522,11 +528,19 @@ void MaximalSampling::search_cells(const JobStage& stage) {
   open_.clear();
 }
 
+/// Scans list their faces in any order; along a curve neighbors follow each other.
+void MaximalSampling::order_faces() {
+  const HilbertCurve curve(mesh_->positions());
+  face_order_.reserve(static_cast<std::size_t>(mesh_->face_count()));
+  for (Index f = 0; f < mesh_->face_count(); ++f) face_order_.push_back(curve.key(mesh_->position(mesh_->from(3 * f))));
+}
+
 DistributionStop MaximalSampling::run(const JobStage& stage) {
   constexpr double k_random_share = 0.4;  // of the work, where cells are searched after it
   const DistributionStop random_stop = sample_at_random(stage.part(0, searches() ? k_random_share : 1));
   if (random_stop == DistributionStop::counts || !searches() || insertion_->is_hopeless()) return random_stop;
   find_least_stuck();
+  order_faces();
   const auto share = [&] { return k_random_share + (1 - k_random_share) * next_face_ / mesh_->face_count(); };
   while (next_face_ < mesh_->face_count() && insertion_->is_any_wanted()) {
     const double begin = share();

@@ -61,6 +61,7 @@ class MaximalSampling {
   void try_batch(int number, double per_area, const JobStage& stage);
   template <class Visit>
   void draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage, Visit&& visit) const;
+  void order_faces();
   void search_cells(const JobStage& stage);
   void round(const JobStage& stage);
   void look(const OpenCell& open, Index number, Neighbors& near, Look& look) const;
@@ -90,6 +91,7 @@ class MaximalSampling {
   Insertion* insertion_;
   const DistributionOptions* options_;
   std::vector<OpenCell> open_;
+  std::vector<std::uint64_t> face_order_;  ///< keys of their places along a curve
   Index next_face_ = 0;                    ///< whose cells have not been opened yet
   std::vector<double> front_;              ///< per vertex, for packing
   std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none

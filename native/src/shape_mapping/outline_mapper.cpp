@@ -51,12 +51,12 @@ MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& plac
   begin(outline, limits);
   double radius = 0;
   for (const Vec2& corner : corners_) radius = std::max(radius, corner.norm());
-  try {
-    plane_.about_point(placement.center, placement.angle, box_, limits.largest * radius,
-                       [this](Index vertex) { look_at(vertex); });
-  } catch (const Failed& failed) {
-    return failed.reason();
-  }
+  MapFailure failure = MapFailure::none;
+  plane_.about_point(placement.center, placement.angle, box_, limits.largest * radius, [&](Index vertex) {
+    failure = look_at(vertex);
+    return failure == MapFailure::none;
+  });
+  if (failure != MapFailure::none) return failure;
   settled_ = plane_.vertices().size();
   return cut();
 }
@@ -194,34 +194,43 @@ double OutlineMapper::cross_weight(Index h, const Vec2& a, const Vec2& b) const 
   return right + left > 0 ? right / (right + left) : 0.5;
 }
 
-/// The singular values of the map from the plane to a face, which must be laid out well.
-OutlineMapper::Stretch OutlineMapper::checked(Index face) const {
+/// Finds the singular values of the map from the plane to a face, and whether it is laid out well.
+MapFailure OutlineMapper::measure(Index face, Stretch& stretch) const {
   const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
   const Vec2 &a = place(i), &b = place(j), &c = place(k);
-  if (!is_upright(a, b, c)) throw Failed(MapFailure::fold);
+  if (!is_upright(a, b, c)) return MapFailure::fold;
   const Vec3 e1 = mesh_->position(j) - mesh_->position(i), e2 = mesh_->position(k) - mesh_->position(i);
   const Vec2 u1 = b - a, u2 = c - a;
   const double scale = 1 / cross(u1, u2);
   const Vec3 x = scale * (u2.y() * e1 - u1.y() * e2), y = scale * (u1.x() * e2 - u2.x() * e1);
   const double xx = x.squaredNorm(), yy = y.squaredNorm();
   const double largest = std::sqrt(0.5 * (xx + yy) + hypotenuse(0.5 * (xx - yy), x.dot(y)));
-  const Stretch stretch{x.cross(y).norm() / largest, largest};
-  if (!(stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest))
-    throw Failed(MapFailure::stretched);
-  return stretch;
+  stretch = {x.cross(y).norm() / largest, largest};
+  const bool is_right = stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest;
+  return is_right ? MapFailure::none : MapFailure::stretched;
 }
 
 /// Looks at the faces, of those about vertices in the shape, whose last corner this is.
-void OutlineMapper::look_at(Index vertex) {
+MapFailure OutlineMapper::look_at(Index vertex) {
   const Vec2& at = place(vertex);
   const bool is_in = is_in_shape(at);
-  if (is_in && mesh_->is_boundary(vertex)) throw Failed(MapFailure::boundary);
+  if (is_in && mesh_->is_boundary(vertex)) return MapFailure::boundary;
   if (is_in) inside_stamps_[vertex] = stamp_;
+  enum State : std::uint8_t { unknown, outside, inside };
+  const auto state_of = [&](Index other) {
+    if (!plane_.is_settled(other)) return unknown;
+    return has_inside(other) ? inside : outside;
+  };
+  State next = state_of(mesh_->to(mesh_->first_halfedge(vertex)));
   for (const Index h : outgoing(*mesh_, vertex)) {
-    const Index next = mesh_->to(h), apex = mesh_->apex(h);
-    if (plane_.is_settled(next) && plane_.is_settled(apex) && (is_in || has_inside(next) || has_inside(apex)))
-      checked(Mesh::face_of(h));
+    const State apex = state_of(mesh_->apex(h));
+    if (next != unknown && apex != unknown && (is_in || next == inside || apex == inside)) {
+      Stretch stretch;
+      if (const MapFailure failure = measure(Mesh::face_of(h), stretch); failure != MapFailure::none) return failure;
+    }
+    next = apex;  // of which the next half-edge goes there
   }
+  return MapFailure::none;
 }
 
 /// The shape touches this face: all of it must be laid out well.
@@ -229,7 +238,8 @@ void OutlineMapper::enter(Index face) {
   if (face_stamps_[face] == stamp_) return;
   face_stamps_[face] = stamp_;
   plane_.complete(face);
-  const Stretch stretch = checked(face);
+  Stretch stretch;
+  if (const MapFailure failure = measure(face, stretch); failure != MapFailure::none) throw Failed(failure);
   outline_->smallest = std::min(outline_->smallest, stretch.smallest);
   outline_->largest = std::max(outline_->largest, stretch.largest);
   outline_->faces.push_back(face);

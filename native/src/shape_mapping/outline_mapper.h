@@ -62,10 +62,10 @@ class OutlineMapper {
   Vec2 weights_in_face(const Vec2& corner) const;
   void begin(SurfaceOutline& outline, const MapLimits& limits);
   struct Stretch {
-    double smallest, largest;
+    double smallest = 0, largest = 0;
   };
-  Stretch checked(Index face) const;
-  void look_at(Index vertex);
+  MapFailure measure(Index face, Stretch& stretch) const;
+  MapFailure look_at(Index vertex);
   void enter(Index face);
   void find_inside();
   bool is_in_shape(const Vec2& vertex) const;

@@ -147,7 +147,7 @@ void ShapeMap::march(const PlaneBox& box, const Watch& watch) {
     Node& node = nodes_[entry.vertex];
     if (node.state == State::settled || node.key != entry.key) continue;
     node.state = State::settled;
-    if (watch) watch(entry.vertex);
+    if (watch && !watch(entry.vertex)) return;
     look_about(entry.vertex, box);
   }
 }
@@ -167,10 +167,13 @@ void ShapeMap::look_about(Index vertex, const PlaneBox& box) {
     return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place) &&
            (is_near || !is_out_of_reach(vertex, other));
   };
+  bool is_next_open = is_open(mesh_->to(mesh_->first_halfedge(vertex)));
   for (const Index h : outgoing(*mesh_, vertex)) {
     const Index next = mesh_->to(h), apex = mesh_->apex(h);
-    if (is_open(next)) look_through(vertex, next, apex);
-    if (is_open(apex)) look_through(apex, vertex, next);
+    const bool is_apex_open = is_open(apex);
+    if (is_next_open) look_through(vertex, next, apex);
+    if (is_apex_open) look_through(apex, vertex, next);
+    is_next_open = is_apex_open;  // the apex is where the next half-edge goes
   }
 }
 

@@ -37,9 +37,8 @@ class ShapeMap {
   ShapeMap(ShapeMap&&) noexcept;
   ShapeMap& operator=(ShapeMap&&) noexcept;
 
-  /// A function that is called with each vertex whose coordinates are found, the nearest first; may throw to end it
-  /// all.
-  using Watch = std::function<void(Index vertex)>;
+  /// A function that is called with each vertex whose coordinates are found, the nearest first, until it returns false.
+  using Watch = std::function<bool(Index vertex)>;
 
   /// The exponential map: the center at the origin, the x axis at `angle` in the FaceChart of center.face. At a vertex
   /// angles are scaled so that its total angle becomes 2 pi. Where the surface folds, the plane may be laid back and
