@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-KINDS = ("objects", "meshes", "curves", "collections", "node_groups", "materials", "actions")
+KINDS = ("objects", "meshes", "curves", "collections", "node_groups", "materials", "actions", "images")
 
 # Type of an attribute -> its elements' property, how many numbers that has, and the type that Blender copies in one go.
 ELEMENTS: dict[str, tuple[str, int, type[np.generic]]] = {

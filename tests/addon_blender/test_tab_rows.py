@@ -116,6 +116,7 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
         "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},
         "direction_field": {"strokes_object", "strokes_collection", "singularities_collection", "align_weight"},
         "distribute": {"shapes_collection", "shapes_image", "direction_attribute"},
+        "bake": {"direction_attribute"},
         "repair": set(),
     }[name]
     dependent |= {"look", "region_name"}  # which has buttons of its own; which a part of the surface needs

@@ -15,6 +15,7 @@ from .disk_cache import DiskCache
 from .live_cells import LiveCells
 from .results import Indices, Reals
 from .settings import (
+    BakeSettings,
     DirectionFieldSettings,
     DistanceSettings,
     DistributeSettings,
@@ -23,6 +24,7 @@ from .settings import (
     Voronoi2dSettings,
 )
 from .shapes.shape_templates import ShapeTemplate
+from .solids.cell_mesh import CellShape
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -172,6 +174,21 @@ class TessellateRequest:
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     live: LiveCells | None = None  # shown the cells while they are relaxed
+
+
+@dataclass(frozen=True)
+class BakeRequest:
+    """Images of the cells of one tessellation."""
+
+    cells: TessellateRequest
+    settings: BakeSettings
+    shape: CellShape  # of the height
+    uv: Reals  # (3 F, 2) UV places of the triangles' corners
+    tiles: tuple[int, ...]  # numbers of the UDIM tiles, 1001 without tiles
+    polygons: Indices  # (F,) polygon of the Blender mesh that each triangle is part of, for messages
+    directions: Reals | None = None  # (3 F, 3) in the world at the triangles' corners, where they are wanted
+    vertex_cell: Indices | None = None  # (V,) of the Blender mesh: the cells that are seen there, where they are known
+    threads: int = 0
 
 
 @dataclass(frozen=True)

@@ -47,34 +47,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     """
     cache = cache or cache_module.shared
     settings, surface = request.settings, request.surface
-    sites = None if request.sites is None else compact_points(surface, request.sites, "site")
-    mesh = mesh_of_surface(surface, progress, cache)
-    choice = GraphChoice(settings.quality, settings.k)
-    graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
-    density = density_of(request.density, surface, settings, mesh, lambda: graph, progress)
-    moves = sites is None or settings.relax_sites
-    iterations = settings.iterations if moves else 0
-    what = digest(
-        settings.count if sites is None else sites,
-        settings.seed if sites is None else 0,
-        iterations,
-        settings.method if iterations else "",
-        _starts(request),
-        _annealing(request, iterations),
-        _closed_ball(request, iterations),
-        density if sites is None or iterations else None,
-        *_held(request),
-    )
-    key = (choice.name(surface), what)
-
-    def solve() -> _Solved:
-        return _solve(request, mesh, graph, sites, density, iterations, progress)
-
-    if request.live is None:
-        solved = cache.get(("cells", *key), solve, _solved_bytes)
-    else:  # to be looked at, however often it ran before, and perhaps stopped on the way
-        solved = solve()
-        key = (key[0], digest(what, solved.energy, "live"))
+    mesh, density, solved, key = solved_cells(request, progress, cache)
     result = _result(request, solved, density)
     if settings.make_cells or settings.write_edge_distance:
         with progress.stage(0.98, "cutting the cells out"):
@@ -99,6 +72,42 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         result = replace(result, shell=_shell(request, mesh, solved, key, progress, cache))
     progress.check()
     return result
+
+
+def solved_cells(
+    request: TessellateRequest, progress: Progress, cache: Cache
+) -> tuple[Any, Reals | None, Solved, tuple[str, ...]]:
+    """The library's mesh, the density (n,) of its vertices, the cells, and what names them in the cache."""
+    settings, surface = request.settings, request.surface
+    sites = None if request.sites is None else compact_points(surface, request.sites, "site")
+    mesh = mesh_of_surface(surface, progress, cache)
+    choice = GraphChoice(settings.quality, settings.k)
+    graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+    density = density_of(request.density, surface, settings, mesh, lambda: graph, progress)
+    moves = sites is None or settings.relax_sites
+    iterations = settings.iterations if moves else 0
+    what = digest(
+        settings.count if sites is None else sites,
+        settings.seed if sites is None else 0,
+        iterations,
+        settings.method if iterations else "",
+        _starts(request),
+        _annealing(request, iterations),
+        _closed_ball(request, iterations),
+        density if sites is None or iterations else None,
+        *_held(request),
+    )
+    key = (choice.name(surface), what)
+
+    def solve() -> Solved:
+        return _solve(request, mesh, graph, sites, density, iterations, progress)
+
+    if request.live is None:
+        solved = cache.get(("cells", *key), solve, _solved_bytes)
+    else:  # to be looked at, however often it ran before, and perhaps stopped on the way
+        solved = solve()
+        key = (key[0], digest(what, solved.energy, "live"))
+    return mesh, density, solved, key
 
 
 def distance(request: DistanceRequest, progress: Progress, cache: Cache | None = None) -> DistanceResult:
@@ -158,7 +167,7 @@ def _isolines(surface: Surface, values: Reals, settings: DistanceSettings, progr
 
 
 @dataclass(frozen=True)
-class _Solved:
+class Solved:
     """Cells as the library gives them, and how they came about."""
 
     cells: Any
@@ -203,7 +212,7 @@ def _solve(
     density: Reals | None,
     iterations: int,
     progress: Progress,
-) -> _Solved:
+) -> Solved:
     sb, settings = native.load(), request.settings
     points = None if sites is None else surface_points(mesh, sites)
     energy, done, reason, normalized, exchanged = np.empty(0), 0, "sites kept", None, 0
@@ -236,10 +245,10 @@ def _solve(
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     normals = normals_at(vertices, triangles, faces, barycentric)
-    return _Solved(cells, positions, normals, energy, done, reason, normalized, exchanged)
+    return Solved(cells, positions, normals, energy, done, reason, normalized, exchanged)
 
 
-def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) -> CellsResult:
+def _result(request: TessellateRequest, solved: Solved, density: Reals | None) -> CellsResult:
     cells, surface = solved.cells, request.surface
     return CellsResult(
         vertex_cell=surface.spread(cells.vertex_cell, -1),
@@ -268,7 +277,7 @@ def _tone(surface: Surface, sites: Any, density: Reals) -> Reals:
 
 
 def _shell(
-    request: TessellateRequest, mesh: Any, solved: _Solved, key: tuple[str, ...], progress: Progress, cache: Cache
+    request: TessellateRequest, mesh: Any, solved: Solved, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> LampShell:
     settings = request.settings
     width = progress.choose("rib_width", settings.rib_width, RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas)))
@@ -292,7 +301,7 @@ def _edge_distance(surface: Surface, split: Any) -> Reals:
     return found
 
 
-def _solved_bytes(solved: _Solved) -> int:
+def _solved_bytes(solved: Solved) -> int:
     cells = solved.cells
     arrays = (cells.vertex_cell, cells.vertex_distance, cells.edge_points, cells.edge_offsets, cells.edge_cells)
     # Twice: the library holds its own copy beside the arrays that it hands out.

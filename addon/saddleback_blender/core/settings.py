@@ -257,6 +257,28 @@ class DistributeSettings(DensitySettings, PatternSettings):
 
 
 @dataclass(frozen=True)
+class BakeSettings:
+    """All properties of `saddleback.bake`."""
+
+    uv_name: str = ""  # the UV map; "" = the active one
+    resolution: int = 2048  # texels in each direction
+    use_tiles: bool = False  # an image of UDIM tiles, of those in which faces lie
+    margin: int = 16  # texels
+    bits: str = "16"  # 8, 16, 32
+    bake_cell: bool = True
+    cell_as: str = "COLOR"  # COLOR, NUMBER
+    bake_edge_distance: bool = True
+    bake_height: bool = True
+    profile: str = "PANELS"  # PANELS, PEBBLES, CELLS = as the output Cells is shaped
+    bake_local_uv: bool = False
+    bake_direction: bool = False
+    direction_attribute: str = "saddleback_direction"
+    direction_space: str = "TANGENT"  # TANGENT, WORLD
+    image_prefix: str = ""  # images are called so and what they show; "" = the object's name
+    folder: str = ""  # where files go; "" = into the .blend
+
+
+@dataclass(frozen=True)
 class RepairSettings:
     """All properties of `saddleback.repair`."""
 

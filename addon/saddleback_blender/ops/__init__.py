@@ -7,6 +7,7 @@ import bpy
 from . import (
     apply_look,
     asset_library,
+    bake,
     clear,
     direction_field,
     distance,
@@ -31,6 +32,7 @@ CLASSES = (
     *voronoi_2d.CLASSES,
     *direction_field.CLASSES,
     *distribute.CLASSES,
+    *bake.CLASSES,
     *paint.CLASSES,
     *repair.CLASSES,
     *export_stl.CLASSES,

@@ -16,6 +16,7 @@ ROWS = {
     "voronoi_2d": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "instance_size", "instance_scale"),
     "direction_field": ("symmetry", "align", "turn", "arrow_count", "streamline_spacing", "streamline_radius"),
     "distribute": ("count", "seed", "size", "packing", "gap", "outline_radius"),
+    "bake": ("resolution", "margin", "bits", "profile"),
     "repair": ("weld_distance", "close_cracks", "fill_holes"),
 }
 # The switches of what is neither a length nor always there.

@@ -33,7 +33,7 @@ from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
 from ..core.mirrored_runs import halved
 from ..core.progress import Progress
-from ..core.requests import TessellateRequest
+from ..core.requests import Surface, TessellateRequest
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from ..props import keep_settings, settings_of
@@ -48,6 +48,29 @@ ENDS = {
     "cancelled": " until it was stopped",
     "closed_ball": " as far as the dual mesh stayed whole",
 }
+
+
+def read_request(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    mesh: bpy.types.Mesh,
+    settings: TessellateSettings,
+    measured: Callable[[TessellateSettings, Surface, int], TessellateSettings],
+) -> TessellateRequest:
+    """Reads what cells are made from; `measured` gives the settings' lengths for so many cells."""
+    surface = read_part(source, mesh, settings)
+    if settings.sites_source == "SIZE":
+        settings = replace(settings, sites_source="COUNT", count=count_of_size(surface, settings.cell_size))
+    sites = read_sites(context, source, mesh, settings)
+    return TessellateRequest(
+        surface=surface,
+        settings=measured(settings, surface, settings.count if sites is None else len(sites)),
+        density=read_density(source, mesh, settings),
+        sites=sites,
+        marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
+        threads=prefs.threads(context),
+        disk=prefs.disk_cache(context, settings.cache_on_disk),
+    )
 
 
 class CellsOperator(SurfaceOperator):
@@ -66,23 +89,9 @@ class CellsOperator(SurfaceOperator):
         settings = settings_of(self, TessellateSettings)
         _check(source, settings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
-            surface = read_part(source, mesh, settings)
-            if settings.sites_source == "SIZE":
-                count = count_of_size(surface, settings.cell_size)
-                settings = replace(settings, sites_source="COUNT", count=count)
-            sites = read_sites(context, source, mesh, settings)
-            measured = self.measured(settings, surface, settings.count if sites is None else len(sites))
-            request = TessellateRequest(
-                surface=surface,
-                settings=measured,
-                density=read_density(source, mesh, settings),
-                sites=sites,
-                marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
-                threads=prefs.threads(context),
-                disk=prefs.disk_cache(context, settings.cache_on_disk),
-                live=live,
-            )
-            mirror = read_mirror(source, mesh, surface) if settings.mirror_x else None
+            request = read_request(context, source, mesh, settings, self.measured)
+            mirror = read_mirror(source, mesh, request.surface) if settings.mirror_x else None
+        request = replace(request, live=live)
         if mirror is not None:
             self._surface = mirror.whole  # on which all of it lies
             return partial(mirrored_runs.tessellate, halved(request, mirror), mirror)

@@ -16,6 +16,7 @@ from .. import rollback
 from ..blocks import find, name_of
 from ..core.lengths import SHARE
 from ..core.settings import (
+    BakeSettings,
     DirectionFieldSettings,
     DistanceSettings,
     DistributeSettings,
@@ -25,6 +26,7 @@ from ..core.settings import (
     Voronoi2dSettings,
 )
 from . import layers, old_files, overrides
+from .bake import BAKE
 from .direction_field import DIRECTION_FIELD, DIRECTION_FIELD_BEGIN
 from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
@@ -42,6 +44,7 @@ Settings = TypeVar(
     Voronoi2dSettings,
     DirectionFieldSettings,
     DistributeSettings,
+    BakeSettings,
     RepairSettings,
 )
 
@@ -68,6 +71,7 @@ PROPERTIES = {
     "voronoi_2d": VORONOI_2D,
     "direction_field": DIRECTION_FIELD,
     "distribute": DISTRIBUTE,
+    "bake": BAKE,
     "repair": REPAIR,
 }
 # What the panel begins with where that is better than what a script gets that names nothing: its defaults never change.
@@ -144,6 +148,12 @@ class SaddlebackDistributeProps(bpy.types.PropertyGroup):
     __annotations__ = _kept("distribute")
 
 
+class SaddlebackBakeProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.bake`."""
+
+    __annotations__ = _kept("bake")
+
+
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.repair`."""
 
@@ -165,6 +175,7 @@ class SaddlebackLayer(bpy.types.PropertyGroup):
             "voronoi_2d": SaddlebackVoronoi2dProps,
             "direction_field": SaddlebackDirectionFieldProps,
             "distribute": SaddlebackDistributeProps,
+            "bake": SaddlebackBakeProps,
         }
     ) | dict(LAYER_SETTINGS)
 
@@ -179,6 +190,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "voronoi_2d": PointerProperty(type=SaddlebackVoronoi2dProps),
         "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
         "distribute": PointerProperty(type=SaddlebackDistributeProps),
+        "bake": PointerProperty(type=SaddlebackBakeProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
         "layers": CollectionProperty(
             type=SaddlebackLayer,
@@ -200,6 +212,7 @@ CLASSES = (
     SaddlebackVoronoi2dProps,
     SaddlebackDirectionFieldProps,
     SaddlebackDistributeProps,
+    SaddlebackBakeProps,
     SaddlebackRepairProps,
     SaddlebackLayer,
     SaddlebackObjectProps,

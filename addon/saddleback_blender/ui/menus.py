@@ -19,6 +19,7 @@ PAGES = {
     "check_distribution": "shapes.md",
     "make_real": "shapes.md",
     "paint_density": "tessellation.md",
+    "bake": "bake.md",
     "repair": "repair.md",
     "layer_": "layers.md",
     "region_": "layers.md",
@@ -31,6 +32,7 @@ GROUPS = {
     "SaddlebackVoronoi2dProps": "voronoi_2d.md",
     "SaddlebackDirectionFieldProps": "direction_field.md",
     "SaddlebackDistributeProps": "shapes.md",
+    "SaddlebackBakeProps": "bake.md",
     "SaddlebackRepairProps": "repair.md",
     "SaddlebackLayer": "layers.md",
 }
@@ -45,6 +47,7 @@ ENTRIES = (
     None,
     ("direction_field", "FORCE_WIND"),
     ("distribute", "STICKY_UVS_DISABLE"),
+    ("bake", "TEXTURE"),
     None,
     ("layer_add", "ADD"),
     ("layer_duplicate", "DUPLICATE"),

@@ -616,6 +616,32 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         layout.prop(settings, "write_attributes")
 
 
+class SADDLEBACK_PT_bake(SaddlebackSubPanel, bpy.types.Panel):
+    """Images of the cells."""
+
+    bl_label = "Bake"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = active_object(context)
+        layout = self.split_layout(context)
+        _draw_button(layout, context, "saddleback.bake", "TEXTURE")
+        _draw_state(layout, context, "bake")
+        rows.draw_maps(layout.column(), item.saddleback.bake, item)
+
+
+class SADDLEBACK_PT_bake_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How images are written."""
+
+    bl_parent_id = "SADDLEBACK_PT_bake"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = active_object(context)
+        rows.draw_images(self.split_layout(context), item.saddleback.bake, item)
+
+
 class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
     """Faults of the mesh."""
 
@@ -674,5 +700,7 @@ CLASSES = (
     SADDLEBACK_PT_shape_density,
     SADDLEBACK_PT_shape_outputs,
     SADDLEBACK_PT_shapes_advanced,
+    SADDLEBACK_PT_bake,
+    SADDLEBACK_PT_bake_advanced,
     SADDLEBACK_PT_repair,
 )

@@ -392,3 +392,30 @@ def draw_pointer(layout: bpy.types.UILayout, settings: Any, name: str, blocks: s
 
 def _is_name(settings: Any, name: str) -> bool:
     return bool(settings.bl_rna.properties[name].type == "STRING")
+
+
+def draw_maps(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """Draws which images are baked, and how large."""
+    layout.prop(settings, "resolution")
+    column = layout.column(heading="Maps")
+    column.prop(settings, "bake_cell")
+    column.prop(settings, "bake_edge_distance")
+    column.prop(settings, "bake_height")
+    column.prop(settings, "bake_local_uv")
+    column.prop(settings, "bake_direction")
+    if settings.bake_height:
+        layout.prop(settings, "profile")
+    if settings.bake_direction:
+        layout.prop_search(settings, "direction_attribute", item.data, "attributes", icon="FORCE_WIND")
+    layout.prop(settings, "folder")
+
+
+def draw_images(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """Draws what images are like."""
+    layout.prop_search(settings, "uv_name", item.data, "uv_layers", icon="GROUP_UVS")
+    layout.prop(settings, "use_tiles")
+    layout.prop(settings, "margin")
+    layout.prop(settings, "bits")
+    layout.prop(settings, "cell_as")
+    layout.prop(settings, "direction_space")
+    layout.prop(settings, "image_prefix")

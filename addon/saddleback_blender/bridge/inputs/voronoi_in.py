@@ -19,12 +19,14 @@ from .mesh_in import mesh_of
 from .sites import object_points, selected_vertices
 
 
-def read_uv(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> Reals:
+def read_uv(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str = " or choose Disk as its space"
+) -> Reals:
     """(3 F, 2) UV places of the corners of the triangles that `read_surface` gives."""
     layer = mesh.uv_layers.get(name) if name else mesh.uv_layers.active
     if layer is None:
         missing = f"no UV map '{name}'" if name else "no UV map"
-        raise BadInputError(f"'{source.name}' has {missing}; unwrap it (UV > Unwrap) or choose Disk as its space")
+        raise BadInputError(f"'{source.name}' has {missing}; unwrap it (UV > Unwrap){otherwise}")
     places = np.empty(2 * len(mesh.loops), np.float32)
     layer.data.foreach_get("uv", places)
     corners = read_triangle_corners(mesh)

@@ -9,7 +9,7 @@ import numpy as np
 from .. import native
 from ..errors import BadInputError
 from ..requests import GivenDirections, Surface
-from ..results import Reals
+from ..results import Indices, Reals
 
 LEAST = 1e-6  # of the longest vector: shorter ones are no direction
 
@@ -58,3 +58,38 @@ def _face_normals(mesh: Any) -> Reals:
     normals = np.cross(b - a, c - a)
     units: Reals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     return units
+
+
+def corner_directions(surface: Surface, given: GivenDirections) -> Reals:
+    """(3 F, 3) the vectors at the corners of the surface's triangles."""
+    if given.polygons is not None:
+        polygons = given.polygons if surface.kept is None else given.polygons[surface.kept]
+        of_faces: Reals = np.repeat(given.vectors[polygons], 3, axis=0)
+        return of_faces
+    corners: Reals = given.vectors[_numbers(surface)[surface.triangles.ravel()]]
+    return corners
+
+
+def in_tangents(surface: Surface, uv: Reals, vectors: Reals) -> Reals:
+    """Vectors (3 F, 3) at the corners by the axes of each triangle in the UV map (3 F, 2): to the right along the
+    surface, upwards at right angles to that, out of the surface. Where the map has no area, zero.
+    """
+    corners, places = surface.vertices[surface.triangles], uv.reshape(-1, 3, 2)
+    (e, f), (p, q) = (np.moveaxis(sides[:, 1:] - sides[:, :1], 1, 0) for sides in (corners, places))
+    normals = np.cross(e, f)
+    area = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+    right = np.sign(area)[:, None] * (q[:, 1:] * e - p[:, 1:] * f)
+    up = np.sign(area)[:, None] * np.cross(normals, right)
+    axes = np.stack([_units(right), _units(up), _units(normals) * (area != 0)[:, None]], axis=1)
+    along: Reals = np.einsum("fij,fkj->fki", axes, vectors.reshape(-1, 3, 3)).reshape(-1, 3)
+    return along
+
+
+def _units(vectors: Reals) -> Reals:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    units: Reals = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return units
+
+
+def _numbers(surface: Surface) -> Indices:
+    return np.arange(surface.vertex_count, dtype=np.int32) if surface.used is None else surface.used
