@@ -115,7 +115,13 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
         "path": {"points_group", "points_collection", "connect", "from_cursor"},
         "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},
         "direction_field": {"strokes_object", "strokes_collection", "singularities_collection", "align_weight"},
-        "distribute": {"shapes_collection", "shapes_image", "direction_attribute"},
+        "distribute": {
+            "shapes_collection",
+            "shapes_image",
+            "direction_attribute",
+            "direction_color",
+            "direction_image",
+        },
         "bake": {"direction_attribute"},
         "repair": set(),
     }[name]

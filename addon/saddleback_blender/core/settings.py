@@ -239,8 +239,10 @@ class DistributeSettings(DensitySettings, PatternSettings):
     mirror: bool = False  # half of them
     bend: bool = False  # along the field, unless they fill the surface
     seed: int = 0
-    field_source: str = "PANEL"  # PANEL, ATTRIBUTE, NONE = the smoothest lines
+    field_source: str = "PANEL"  # PANEL, ATTRIBUTE, COLOR, IMAGE, NONE = the smoothest lines
     direction_attribute: str = "saddleback_direction"
+    direction_color: str = ""  # "" = the active one
+    direction_image: str = ""
     forbidden_group: str = ""
     use_modifiers: bool = False
     make_bent: bool = True

@@ -28,6 +28,8 @@ SHAPES = (
 FIELD_SOURCES = (
     ("PANEL", "Direction Field", "The field that the panel Direction Field says, made anew where that has changed"),
     ("ATTRIBUTE", "Attribute", "A vector attribute of vertices or faces"),
+    ("COLOR", "Color Attribute", "A painted flow map: red points to the right of the UV map, green upwards"),
+    ("IMAGE", "Image", "A flow map, seen through the active UV map"),
     ("NONE", "Smoothest", "Lines as smooth as can be, without strokes"),
 )
 
@@ -68,6 +70,8 @@ DISTRIBUTE: dict[str, Any] = {
     "seed": TESSELLATE["seed"],
     "field_source": choice("Field", "Which way shapes point", FIELD_SOURCES, "PANEL"),
     "direction_attribute": name_of("Attribute", "The vectors that shapes point along", "saddleback_direction"),
+    "direction_color": name_of("Color Attribute", "The flow map that shapes point along; empty means the active one"),
+    "direction_image": name_of("Image", "The flow map that shapes point along"),
     "forbidden_group": name_of("Keep Off", "No shape lies where this vertex group's weights are above one half"),
     **DENSITY,
     "use_modifiers": use_modifiers(),

@@ -320,6 +320,10 @@ def draw_shapes_advanced(layout: bpy.types.UILayout, settings: Any, item: bpy.ty
     layout.prop(settings, "field_source")
     if settings.field_source == "ATTRIBUTE":
         layout.prop_search(settings, "direction_attribute", item.data, "attributes", icon="SPREADSHEET")
+    elif settings.field_source == "COLOR":
+        layout.prop_search(settings, "direction_color", item.data, "color_attributes", icon="GROUP_VCOL")
+    elif settings.field_source == "IMAGE":
+        draw_pointer(layout, settings, "direction_image", "images")
     layout.prop_search(settings, "forbidden_group", item, "vertex_groups", icon="GROUP_VERTEX")
 
 

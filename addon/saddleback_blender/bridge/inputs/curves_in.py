@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compat
 from ...blocks import find
 from ...core.errors import BadInputError
+from ...core.fields.hair_lines import through_points
 from ...core.requests import Polyline
 from ...core.solids.edge_chains import chains
 from ...nodes import CURVE_TUBES, modifier_of
@@ -33,7 +35,7 @@ def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tupl
         item = find(bpy.data.objects, name)
         if item is None:
             raise BadInputError(f"'{source.name}': there is no object '{name}' to measure from; choose a curve")
-        if item.type != "CURVE":
+        if not is_curve(item):
             raise BadInputError(f"'{source.name}': '{name}' is no curve object; choose a curve to measure from")
         return [item], f"'{name}'"
     if collection:
@@ -46,15 +48,50 @@ def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tupl
     else:
         candidates, where = list(source.children), "the curve parented to it"
     # What we made ourselves, isolines and the like, is no source.
-    curves = [item for item in candidates if item.type == "CURVE" and SOURCE not in item]
+    curves = [item for item in candidates if is_curve(item) and SOURCE not in item]
     if not curves:
         place = f"in collection '{collection}'" if collection else f"parented to '{source.name}'"
         raise BadInputError(f"'{source.name}': no curve is {place}; choose one to measure from")
     return sorted(curves, key=lambda item: item.name_full), where
 
 
+def is_curve(item: bpy.types.Object) -> bool:
+    """Tells whether an object holds curves, of the older or the newer kind, which hair is of."""
+    return item.type in ("CURVE", "CURVES")
+
+
 def polylines_of(item: bpy.types.Object) -> list[Polyline]:
-    """The splines of a curve object as Blender draws them without bevel, its modifiers included.
+    """The splines of a curve object as Blender draws them without bevel, its modifiers included."""
+    return _hair_lines(item) if item.type == "CURVES" else _splines(item)
+
+
+def _hair_lines(item: bpy.types.Object) -> list[Polyline]:
+    """Hair is smooth between its points; of curves with handles or weights these are the points."""
+    with evaluated(bpy.context, [item]) as (shown,):
+        curves = shown.data
+        places = to_world(shown, compat.read_floats(curves.attributes["position"].data, "vector", 3))
+        kinds, closed = (_of_curves(curves, name) for name in ("curve_type", "cyclic"))
+        lines = []
+        for number, curve in enumerate(curves.curves):
+            points = places[curve.first_point_index : curve.first_point_index + curve.points_length]
+            is_closed = bool(closed[number]) and len(points) > 2
+            if len(points) > 1:
+                lines.append(Polyline(points if kinds[number] else through_points(points, is_closed), is_closed))
+    return lines
+
+
+def _of_curves(curves: bpy.types.Curves, name: str) -> NDArray[np.generic]:
+    """(curves,) an attribute that is there only where it is not 0 for all."""
+    attribute = curves.attributes.get(name)
+    if attribute is None:
+        return np.zeros(len(curves.curves), np.int8)
+    values: NDArray[np.generic] = np.zeros(len(curves.curves), np.bool_ if name == "cyclic" else np.int8)
+    attribute.data.foreach_get("value", values)
+    return values
+
+
+def _splines(item: bpy.types.Object) -> list[Polyline]:
+    """Those of the older kind.
 
     The curve is copied for a moment, since its own bevel would make it a tube. Modifiers that make a surface of it do
     not count.

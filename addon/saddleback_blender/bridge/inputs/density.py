@@ -174,16 +174,26 @@ def read_image(
         raise BadInputError(f"'{source.name}' has {missing} to see image '{name}' through; unwrap it (UV > Unwrap)")
     places = np.empty(2 * len(mesh.loops), np.float32)
     layer.data.foreach_get("uv", places)
-    colors = _colors_of_tiles(source, mesh, image, places.reshape(-1, 2).astype(np.float64))
+    colors = colors_of_tiles(source, mesh, image, places.reshape(-1, 2).astype(np.float64))
     values = density_maths.channel(colors, settings.density_channel)
     return to_vertices(mesh, values, "CORNER"), f"image '{name}'"
 
 
-def _colors_of_tiles(
-    source: bpy.types.Object, mesh: bpy.types.Mesh, image: bpy.types.Image, places: NDArray[np.float64]
+def colors_of_tiles(
+    source: bpy.types.Object,
+    mesh: bpy.types.Mesh,
+    image: bpy.types.Image,
+    places: NDArray[np.float64],
+    as_stored: bool = False,
 ) -> NDArray[np.float64]:
-    """Linear colors (L, 4) at the UV places (L, 2) of face corners. A polygon lies on the UDIM tile of its middle."""
-    tiles = read_tiles(source, image)
+    """Colors (L, 4) at the UV places (L, 2) of face corners, linear ones or the numbers that the image stores.
+
+    A polygon lies on the UDIM tile of its middle.
+    """
+    tiles = {
+        number: (pixels, is_encoded and not as_stored)
+        for number, (pixels, is_encoded) in read_tiles(source, image).items()
+    }
     if list(tiles) == [0]:
         return colors_at(tiles[0][0], places, tiles[0][1])
     totals = compat.read_numbers(mesh.polygons, "loop_total")

@@ -1,15 +1,22 @@
-"""Vector attributes -> directions in the world."""
+"""Vector attributes and flow maps -> directions in the world."""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
 
+from ... import compat
+from ...blocks import find
 from ...core.errors import BadInputError
+from ...core.fields.given_fields import flow_of_polygons
 from ...core.requests import GivenDirections
+from ...core.results import Reals
 from ..outputs.out_field import SYMMETRY
-from .density import to_vertices
-from .mesh_in import read_triangle_polygons
+from .density import colors_of_tiles, to_vertices
+from .mesh_in import read_triangle_polygons, to_world
+from .voronoi_in import read_triangle_corners
+
+INSTEAD = "choose another field"
 
 
 def read_directions(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> GivenDirections:
@@ -33,3 +40,45 @@ def read_directions(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -
         vectors = np.stack([to_vertices(mesh, column, "CORNER") for column in vectors.T], axis=1)
     symmetry = int(mesh.get(SYMMETRY, source.data.get(SYMMETRY, 1)))
     return GivenDirections(vectors, symmetry if symmetry in (1, 2, 4) else 1, f"attribute '{name}'", polygons)
+
+
+def read_painted_flow(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> GivenDirections:
+    """A color attribute as a flow map, by the active UV map. Raises BadInputError where there is none of this name."""
+    name = name or compat.active_color_name(mesh)
+    attribute = mesh.color_attributes.get(name)
+    if attribute is None:
+        missing = f"no color attribute '{name}'" if name else "no color attribute"
+        raise BadInputError(f"'{source.name}' has {missing} for directions; paint one or {INSTEAD}")
+    # Bytes are what was painted; as colors they would be made linear.
+    element = "color_srgb" if attribute.data_type == "BYTE_COLOR" else "color"
+    colors = compat.read_floats(attribute.data, element, 4).astype(np.float64)
+    if attribute.domain == "POINT":
+        colors = colors[compat.read_corner_vertices(mesh)]
+    return _flow(source, mesh, colors, f"color attribute '{name}'")
+
+
+def read_image_flow(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> GivenDirections:
+    """An image as a flow map, by the active UV map. Raises BadInputError where there is none of this name."""
+    image = find(bpy.data.images, name)
+    if image is None:
+        missing = f"there is no image '{name}'" if name else "no image is chosen"
+        raise BadInputError(f"'{source.name}': {missing} for directions; choose one")
+    colors = colors_of_tiles(source, mesh, image, _uv_places(source, mesh), as_stored=True)
+    return _flow(source, mesh, colors, f"image '{name}'")
+
+
+def _uv_places(source: bpy.types.Object, mesh: bpy.types.Mesh) -> Reals:
+    layer = mesh.uv_layers.active
+    if layer is None:
+        raise BadInputError(
+            f"'{source.name}' has no UV map to tell directions by; unwrap it (UV > Unwrap) or {INSTEAD}"
+        )
+    return compat.read_floats(layer.data, "uv", 2).astype(np.float64)
+
+
+def _flow(source: bpy.types.Object, mesh: bpy.types.Mesh, colors: Reals, label: str) -> GivenDirections:
+    corners, polygons = read_triangle_corners(mesh), read_triangle_polygons(mesh)
+    places = to_world(source, compat.read_positions(mesh))[compat.read_corner_vertices(mesh)[corners]]
+    uv = _uv_places(source, mesh)[corners.ravel()]
+    vectors = flow_of_polygons(places, uv, colors[corners.ravel()], polygons)
+    return GivenDirections(vectors, 1, label, polygons)

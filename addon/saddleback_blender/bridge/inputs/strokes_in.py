@@ -13,7 +13,7 @@ from ...core.errors import BadInputError
 from ...core.requests import StrokeLine
 from ...core.settings import DirectionFieldSettings
 from ..tokens import SOURCE
-from .curves_in import polylines_of
+from .curves_in import is_curve, polylines_of
 from .evaluated import evaluated
 from .mesh_in import to_world
 
@@ -76,12 +76,12 @@ def _of_collection(context: bpy.types.Context, source: bpy.types.Object, name: s
 
 
 def _has_strokes(item: bpy.types.Object) -> bool:
-    return item.type == "CURVE" or compat.is_grease_pencil(item)
+    return is_curve(item) or compat.is_grease_pencil(item)
 
 
 def _lines_of(context: bpy.types.Context, item: bpy.types.Object) -> list[StrokeLine]:
     label = f"a stroke of '{item.name}'"
-    if item.type == "CURVE":
+    if is_curve(item):
         hard = _is_hard(item.name)
         return [StrokeLine(line.points, line.closed, hard, label) for line in polylines_of(item)]
     with evaluated(context, [item]) as (shown,):

@@ -1,4 +1,4 @@
-"""A vector attribute -> the library's field."""
+"""Vector attributes and flow maps -> the library's field."""
 
 from __future__ import annotations
 
@@ -71,18 +71,40 @@ def corner_directions(surface: Surface, given: GivenDirections) -> Reals:
 
 
 def in_tangents(surface: Surface, uv: Reals, vectors: Reals) -> Reals:
-    """Vectors (3 F, 3) at the corners by the axes of each triangle in the UV map (3 F, 2): to the right along the
-    surface, upwards at right angles to that, out of the surface. Where the map has no area, zero.
-    """
-    corners, places = surface.vertices[surface.triangles], uv.reshape(-1, 3, 2)
-    (e, f), (p, q) = (np.moveaxis(sides[:, 1:] - sides[:, :1], 1, 0) for sides in (corners, places))
-    normals = np.cross(e, f)
-    area = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-    right = np.sign(area)[:, None] * (q[:, 1:] * e - p[:, 1:] * f)
-    up = np.sign(area)[:, None] * np.cross(normals, right)
-    axes = np.stack([_units(right), _units(up), _units(normals) * (area != 0)[:, None]], axis=1)
+    """Vectors (3 F, 3) at the corners by the axes of each triangle in the UV map (3 F, 2); zero where that has none."""
+    axes = tangent_axes(surface.vertices[surface.triangles], uv)
     along: Reals = np.einsum("fij,fkj->fki", axes, vectors.reshape(-1, 3, 3)).reshape(-1, 3)
     return along
+
+
+def flow_of_polygons(corners: Reals, uv: Reals, colors: Reals, polygons: Indices) -> Reals:
+    """Vectors (polygons, 3) of a flow map: means over triangles with corners (F, 3, 3) at UV places (3 F, 2).
+
+    Of the colors (3 F, 3 or more) red tells how far to the right along the UV map, green how far upwards, 0.5 being
+    nowhere.
+    """
+    axes = tangent_axes(corners, uv)
+    along = 2.0 * colors.reshape(len(corners), 3, -1)[:, :, :2].mean(axis=1) - 1.0
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    weights = np.linalg.norm(sides, axis=1)
+    vectors = np.zeros((int(polygons.max(initial=-1)) + 1, 3))
+    np.add.at(vectors, polygons, weights[:, None] * np.einsum("fi,fij->fj", along, axes[:, :2]))
+    total = np.bincount(polygons, weights, len(vectors))
+    means: Reals = np.divide(vectors, total[:, None], out=vectors, where=total[:, None] > 0)
+    return means
+
+
+def tangent_axes(corners: Reals, uv: Reals) -> Reals:
+    """(F, 3, 3) unit axes of triangles (F, 3, 3) by a UV map (3 F, 2): to its right along the surface, upwards at right
+    angles to that, out of the surface. Where the map has no area, zero.
+    """
+    places = uv.reshape(-1, 3, 2)
+    (e, f), (p, q) = (np.moveaxis(sides[:, 1:] - sides[:, :1], 1, 0) for sides in (corners, places))
+    normals, turn = np.cross(e, f), np.sign(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0])[:, None]
+    right = turn * (q[:, 1:] * e - p[:, 1:] * f)
+    up = turn * np.cross(normals, right)
+    axes: Reals = np.stack([_units(right), _units(up), _units(normals) * np.abs(turn)], axis=1)
+    return axes
 
 
 def _units(vectors: Reals) -> Reals:

@@ -1,0 +1,102 @@
+"""Flow maps, painted or in images: which way shapes point by the UV map."""
+
+import bpy
+import numpy as np
+import pytest
+from scenes import add_object, fingerprint, grid_arrays
+
+from saddleback_blender.bridge.inputs.directions_in import read_directions, read_image_flow, read_painted_flow
+
+FEW = {"count": 10, "packing": 0.0}
+AHEAD = (0.6, 0.8)  # to the right and upwards
+
+
+def plate(mirrored=False):
+    """The unit square with its own places as a UV map."""
+    item = add_object("Plate", *grid_arrays(4))
+    corners = np.array([loop.vertex_index for loop in item.data.loops])
+    places = np.array([vertex.co[:2] for vertex in item.data.vertices], np.float32)
+    item.data.uv_layers.new(name="Flat").data.foreach_set("uv", places[corners].ravel())
+    item.rotation_euler = (0.0, 0.0, 0.3)
+    item.scale = (-2.0 if mirrored else 1.0, 1.0, 1.0)
+    bpy.context.view_layer.update()
+    return item
+
+
+def paint(item, kind, domain, flow=AHEAD):
+    layer = item.data.color_attributes.new("Flow", kind, domain)
+    color = np.array([0.5 + 0.5 * flow[0], 0.5 + 0.5 * flow[1], 0.5, 1.0], np.float32)
+    element = "color_srgb" if kind == "BYTE_COLOR" else "color"
+    layer.data.foreach_set(element, np.tile(color, len(layer.data)))
+
+
+def image_of(flow=AHEAD):
+    image = bpy.data.images.new("Flow", 4, 4, float_buffer=True)
+    image.pixels.foreach_set(np.tile(np.array([0.5 + 0.5 * flow[0], 0.5 + 0.5 * flow[1], 0.5, 1.0], np.float32), 16))
+    return image
+
+
+def in_world(item, right=AHEAD[0], up=AHEAD[1]):
+    """The flow by the axes of the plate: its X, and at right angles to that."""
+    x = np.array(item.matrix_world)[:2, 0]
+    x /= np.linalg.norm(x)
+    y = np.array(item.matrix_world)[:2, 1]
+    y /= np.linalg.norm(y)
+    return np.append(right * x + up * y, 0.0)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("kind", ["BYTE_COLOR", "FLOAT_COLOR"])
+@pytest.mark.parametrize("domain", ["POINT", "CORNER"])
+def test_colors_point_by_the_uv_map(kind, domain, mirrored):
+    item = plate(mirrored)
+    paint(item, kind, domain)
+    found = read_painted_flow(item, item.data, "Flow")
+    assert found.vectors.shape == (16, 3) and found.symmetry == 1
+    assert np.allclose(found.vectors, in_world(item), atol=5e-3)
+    assert bpy.ops.saddleback.distribute(field_source="COLOR", direction_color="Flow", **FEW) == {"FINISHED"}
+    assert item.saddleback.distribute.direction_color == "Flow"
+
+
+def test_an_image_points_by_the_uv_map():
+    item = plate()
+    image_of()
+    assert np.allclose(read_image_flow(item, item.data, "Flow").vectors, in_world(item), atol=1e-6)
+    assert bpy.ops.saddleback.distribute(field_source="IMAGE", direction_image="Flow", **FEW) == {"FINISHED"}
+    assert item.saddleback.distribute.direction_image == bpy.data.images["Flow"]
+
+
+@pytest.mark.parametrize("bits", ["8", "16"])
+def test_a_baked_field_is_read_as_it_was(bits):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12)
+    item = bpy.context.active_object
+    item.name = "Ball"
+    bpy.ops.saddleback.direction_field(make_arrows=False)
+    bpy.ops.saddleback.tessellate(count=4, iterations=1, k=30)
+    maps = {"bake_cell": False, "bake_edge_distance": False, "bake_height": False, "bake_direction": True}
+    bpy.ops.saddleback.bake(resolution=512, bits=bits, **maps)
+    given = read_directions(item, item.data, "saddleback_direction").vectors
+    wanted = np.array([given[list(polygon.vertices)].mean(axis=0) for polygon in item.data.polygons])
+    found = read_image_flow(item, item.data, "Ball Direction").vectors
+    middle = np.array([0.2 < abs(polygon.center.z) < 0.8 for polygon in item.data.polygons])
+    cosine = np.einsum("ij,ij->i", wanted, found) / np.linalg.norm(wanted, axis=1) / np.linalg.norm(found, axis=1)
+    assert np.quantile(cosine[middle], 0.05) > 0.95 and np.median(cosine[middle]) > 0.99
+
+
+def refused(text, **settings):
+    before = fingerprint()
+    with pytest.raises(RuntimeError, match=text):
+        bpy.ops.saddleback.distribute(**FEW, **settings)
+    assert fingerprint() == before
+
+
+def test_what_is_not_there_is_refused():
+    item = plate()
+    refused("'Plate' has no color attribute for directions; paint one or choose another field", field_source="COLOR")
+    refused("no image is chosen for directions", field_source="IMAGE")
+    paint(item, "FLOAT_COLOR", "POINT", (0.0, 0.0))
+    refused("color attribute 'Flow' has no direction along the surface on 32 of 32 faces", field_source="COLOR")
+    image_of()
+    item.data.uv_layers.remove(item.data.uv_layers[0])
+    refused("'Plate' has no UV map to tell directions by", field_source="COLOR", direction_color="Flow")
+    refused("'Plate' has no UV map to tell directions by", field_source="IMAGE", direction_image="Flow")
