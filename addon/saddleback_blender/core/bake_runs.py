@@ -6,6 +6,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -96,11 +97,15 @@ def _into(folder: Path, request: BakeRequest, cells: Any, baker: _Baker, progres
         baked = baker.tile(tile, settings.margin, baker.share(number + len(request.tiles), 0.8))
         if number == 0:
             baker.tell_left_out()
-        reach = reach or _largest([_reach_of(baked, count)])
-        for label, part in _maps(request, baked, reach, cells):
-            path = folder / f"{label.replace(' ', '_')}.{tile}{suffix}"
-            _write(path, part, settings, progress)
-            files.setdefault(label, {})[tile] = path
+        reach = reach or _largest([_reach_of(baked)])
+        with ThreadPoolExecutor(request.threads or None) as pool:
+            written = []
+            for label, part in _maps(request, baked, reach, cells):
+                path = folder / f"{label.replace(' ', '_')}.{tile}{suffix}"
+                files.setdefault(label, {})[tile] = path
+                written.append(pool.submit(_write, path, part, settings, progress))
+        for write in written:
+            write.result()
         del baked
     assert reach is not None
     images = tuple(BakedImage(label, paths, _unit_of(label, request, reach)) for label, paths in files.items())
@@ -123,12 +128,8 @@ class _Baker:
 
     def reach_of_all(self) -> _Reach:
         """What values reach in all tiles, which are baked for that alone."""
-        count = len(self._cells.areas)
         return _largest(
-            [
-                _reach_of(self.tile(tile, 0, self.share(number, 1.0)), count)
-                for number, tile in enumerate(self._request.tiles)
-            ]
+            [_reach_of(self.tile(tile, 0, self.share(number, 1.0))) for number, tile in enumerate(self._request.tiles)]
         )
 
     def tile(self, tile: int, margin: int, end: float) -> Any:
@@ -221,20 +222,10 @@ def _check_numbers(request: BakeRequest, count: int) -> None:
         )
 
 
-def _reach_of(baked: Any, count: int) -> _Reach:
-    edge, local, of_cells = 0.0, 0.0, np.zeros(count)
-    if baked.edge_distance is not None:
-        cell, distance = baked.cell.reshape(-1), baked.edge_distance.reshape(-1)
-        for begin in range(0, len(cell), 2**20):  # texel by texel of a cell they are sorted for: one look at each cell
-            part, values = cell[begin : begin + 2**20], distance[begin : begin + 2**20]
-            known = np.flatnonzero((part >= 0) & np.isfinite(values))
-            order = known[np.lexsort((values[known], part[known]))]
-            last = np.flatnonzero(np.diff(part[order], append=-1))
-            of_cells[part[order[last]]] = np.maximum(of_cells[part[order[last]]], values[order[last]])
-        edge = float(of_cells.max(initial=0.0))
-    if baked.local_uv is not None:
-        local = float(np.abs(baked.local_uv).max(initial=0.0))
-    return _Reach(edge, of_cells, local)
+def _reach_of(baked: Any) -> _Reach:
+    of_cells = np.asarray(baked.farthest, np.float64)
+    local = 0.0 if baked.local_uv is None else float(max(baked.local_uv.max(), -baked.local_uv.min()))
+    return _Reach(float(of_cells.max(initial=0.0)), of_cells, local)
 
 
 def _largest(reaches: list[_Reach]) -> _Reach:

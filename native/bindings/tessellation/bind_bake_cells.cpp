@@ -22,7 +22,8 @@ py::object image_of(const py::object& self) {
 
 template <auto Member>
 py::array list_of(const py::object& self) {
-  return view_of(std::span<const Index>(py::cast<const BakedCells&>(self).*Member), self);
+  const auto& values = py::cast<const BakedCells&>(self).*Member;
+  return view_of(std::span(values), self);
 }
 
 /// (3 n, channels) reals, or none.
@@ -149,6 +150,9 @@ void bind_bake_cells(py::module_& m) {
                              "it was not wanted.")
       .def_property_readonly("values", &image_of<&BakedCells::values, true>,
                              "(height, width, channels) float32; None without values.")
+      .def_property_readonly(
+          "farthest", &list_of<&BakedCells::farthest>,
+          "(cells,) float32: the largest edge distance of the texels of each, 0 where there is none.")
       .def_property_readonly("overlapping", &list_of<&BakedCells::overlapping>,
                              "(k,) int32: triangles that share texels' centers with others, deeper than rounding.")
       .def_property_readonly("without_area", &list_of<&BakedCells::without_area>,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <numeric>
 
@@ -181,6 +182,16 @@ BakedCells empty_image(const UvTriangles& given, const BakeOptions& options) {
   return baked;
 }
 
+void find_farthest(BakedCells& baked, std::size_t cell_count, const JobStage& stage) {
+  baked.farthest.assign(cell_count, 0);
+  for (std::size_t texel = 0; texel < baked.edge_distance.size(); ++texel) {
+    if (texel % k_task == 0) stage.check();
+    if (baked.cell[texel] == k_none || std::isinf(baked.edge_distance[texel])) continue;
+    float& farthest = baked.farthest[baked.cell[texel]];
+    farthest = std::max(farthest, baked.edge_distance[texel]);
+  }
+}
+
 void add_margin(BakedCells& baked, const BakeOptions& options, const JobStage& stage) {
   const auto channels = static_cast<std::size_t>(baked.channels);
   const auto copy = [&](std::size_t to, std::size_t from) {
@@ -213,6 +224,7 @@ BakedCells bake_cells(const SaddleVertexGraph& graph, const GeodesicVoronoi& cel
     const auto share = [&](std::size_t texel) { return static_cast<double>(texel) / static_cast<double>(count); };
     baker.bake(begin, end, measuring.part(share(begin), share(end)));
   }
+  find_farthest(baked, cells.areas.size(), stage);
   add_margin(baked, options, stage.part(k_measured, 1));
   stage.update(1);
   return baked;

@@ -120,6 +120,14 @@ def test_local_places_lead_from_vertices_back_to_the_texels() -> None:
         assert np.quantile(off, 0.99) < 1e-5  # but for ways that end beside another that is as long
 
 
+def test_farthest_places_are_those_of_the_texels() -> None:
+    mesh, uv = plane()
+    baked = bake(cells_on(mesh), uv, (64, 64))
+    distance, cell = baked.of("edge_distance"), baked.of("cell")
+    assert baked.image.farthest.tolist() == [distance[cell == number].max() for number in range(12)]
+    assert not sb.bake_cells(cells_on(mesh, 1), uv, size=(8, 8)).farthest.any()
+
+
 def test_values_are_linear_in_triangles() -> None:
     mesh, uv = plane()
     baked = bake(cells_on(mesh), uv, (64, 32), values=np.column_stack([uv, uv[:, :1] + 2 * uv[:, 1:]]))

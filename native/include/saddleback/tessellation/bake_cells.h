@@ -38,6 +38,7 @@ struct BakedCells {
   LargeArray<float> edge_distance;  ///< (height, width) to the boundary of the cell, infinity where it has none
   LargeArray<float> local_uv;       ///< (height, width, 2) the logarithm about the cell's site, mesh units
   LargeArray<float> values;         ///< (height, width, channels)
+  std::vector<float> farthest;      ///< (cells,) the largest finite edge distance of the texels of each, or 0
   std::vector<Index> overlapping;   ///< triangles that share centers of texels with others, deeper than rounding
   std::vector<Index> without_area;  ///< triangles that are none in the UV map
   std::vector<Index> outside;       ///< triangles of which no part is in the image
