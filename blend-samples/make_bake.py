@@ -36,7 +36,6 @@ def main() -> None:
             profile="PEBBLES",
             bake_local_uv=True,
             bake_direction=True,
-            direction_space="WORLD",
             image_prefix=shown,
         )
         body.data.materials.append(material(shown))

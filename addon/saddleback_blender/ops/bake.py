@@ -14,6 +14,7 @@ from ..bridge.inputs.directions_in import read_directions
 from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
 from ..bridge.inputs.voronoi_in import read_uv
 from ..bridge.outputs.out_images import check_images, name_of_image, write_images
+from ..bridge.outputs.output_surface import holder
 from ..core import bake_runs
 from ..core.bake_runs import MOST_TEXELS, BakeResult
 from ..core.cell_runs import shape_of
@@ -64,7 +65,10 @@ class SADDLEBACK_OT_bake(SurfaceOperator, bpy.types.Operator):
             raise BadInputError(f"'{source.name}': mirrored cells cannot be baked; switch X Mirror off and tessellate")
         with mesh_of(context, source, chosen.use_modifiers) as mesh:
             request = read_request(context, source, mesh, chosen, _measured)
-            return partial(bake_runs.bake, _request(source, mesh, settings, request, prefs.threads(context)))
+            baked = _request(source, mesh, settings, request, prefs.threads(context))
+        shown = holder(context, source, chosen.use_modifiers)
+        seen = None if shown is None else _seen_cells(shown.data, chosen.cell_attribute)
+        return partial(bake_runs.bake, replace(baked, vertex_cell=seen))
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: BakeResult) -> str:
         """Makes the images."""
@@ -126,7 +130,6 @@ def _request(
         tiles=tuple(tiles),
         polygons=polygons,
         directions=_directions(source, mesh, settings, surface, uv),
-        vertex_cell=_seen_cells(mesh, cells.settings.cell_attribute),
         threads=threads,
     )
 
@@ -151,7 +154,7 @@ def _directions(
 
 
 def _seen_cells(mesh: bpy.types.Mesh, name: str) -> Indices | None:
-    """(V,) the cells that the mesh shows, None where they are on a copy of it."""
+    """(V,) the cells that the mesh shows, None where it has none."""
     attribute = mesh.attributes.get(name)
     if attribute is None or attribute.domain != "POINT" or attribute.data_type != "INT":
         return None

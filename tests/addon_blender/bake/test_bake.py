@@ -238,6 +238,17 @@ def test_modifiers_and_mirrored_objects():
     assert (images()["Plate Cell"].reshape(-1, 3)[sure, 0] == distance.argmin(axis=1)[sure]).all()
 
 
+def test_cells_on_the_mesh_and_on_what_modifiers_make():
+    item = plate(n=3)
+    bpy.ops.saddleback.tessellate(count=5, **QUICK)
+    item.modifiers.new("Finer", "SUBSURF").subdivision_type = "SIMPLE"
+    bpy.ops.saddleback.tessellate(count=7, use_modifiers=True, **QUICK)
+    assert bpy.ops.saddleback.bake(resolution=32) == {"FINISHED"}
+    item.saddleback.tessellate.count = 8
+    with pytest.raises(RuntimeError, match="its cells are not those of its settings"):
+        bpy.ops.saddleback.bake(resolution=32)
+
+
 def refused(text, **settings):
     before, files = fingerprint(), sorted(image.name for image in bpy.data.images)
     with pytest.raises(RuntimeError, match=text):

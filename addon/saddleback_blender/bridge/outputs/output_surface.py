@@ -27,9 +27,9 @@ def output_surface(
     A new one lies on what the source shows and would fight with it for every pixel: `aside` "HIDE" hides it at first,
     "LIFT" lifts it by a hair.
     """
-    if is_editable(source.data) and (not use_modifiers or has_own_faces(context, source)):
+    existing = holder(context, source, use_modifiers)
+    if existing == source:
         return source
-    existing = find_output(source, SURFACE_ROLE)
     if existing is not None and _same_shape(context, source, existing, use_modifiers):
         return existing  # with the other operators' results on it
     if use_modifiers:
@@ -47,6 +47,13 @@ def output_surface(
     if follower is not None:
         follower.take_all(item, source.matrix_world)
     return item
+
+
+def holder(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> bpy.types.Object | None:
+    """The object whose mesh has the attributes of runs: the source, or what was made beside it, None before."""
+    if is_editable(source.data) and (not use_modifiers or has_own_faces(context, source)):
+        return source
+    return find_output(source, SURFACE_ROLE)
 
 
 def check_attribute_names(
