@@ -19,15 +19,17 @@ from ...core.settings import DistributeSettings
 from ...core.shapes.mask_shapes import parts_of_image, silhouette
 from ...core.shapes.outline_loops import border_loops, is_seen_once, parts_of_loops
 from ...core.shapes.shape_presets import PRESETS, preset
-from ...core.shapes.shape_templates import Parts, ShapeTemplate, Solid, box_uv, fitted
+from ...core.shapes.shape_templates import Parts, ShapeTemplate, Solid, box_uv, fitted, joined
 from ..tokens import SOURCE
 from .curves_in import polylines_of
 from .evaluated import evaluated
 from .images_in import read_pixels
+from .materials_in import shown_materials
 from .mesh_in import modified, read_triangles
 
 SHARE = "share"  # custom property of a shape's object: how many there shall be, to those of others
 FLAT = 1e-9  # of a curve's extent: what is thinner is a line
+FACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")  # kinds of objects that may have some
 REC_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -70,7 +72,13 @@ def _items(source: bpy.types.Object, name: str) -> list[bpy.types.Object]:
 
 
 def _may_be_shape(item: bpy.types.Object) -> bool:
-    return item.type in ("MESH", "CURVE", "FONT") or (item.type == "EMPTY" and isinstance(item.data, bpy.types.Image))
+    is_picture = item.type == "EMPTY" and isinstance(item.data, bpy.types.Image)
+    return item.type in ("MESH", "CURVE", "FONT") or is_picture or _is_instance(item)
+
+
+def _is_instance(item: bpy.types.Object) -> bool:
+    """Tells whether an empty shows a collection."""
+    return item.type == "EMPTY" and item.instance_type == "COLLECTION" and item.instance_collection is not None
 
 
 def _share(source: bpy.types.Object, item: bpy.types.Object) -> float:
@@ -86,14 +94,19 @@ def _share(source: bpy.types.Object, item: bpy.types.Object) -> float:
 
 
 def _template(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> ShapeTemplate:
-    if item.type == "EMPTY":
+    materials: tuple[str, ...] = ()
+    solid: Solid | None
+    if item.type == "EMPTY" and not _is_instance(item):
         return replace(_of_image(source, item.data), name=item.name)
     try:
-        parts, solid = _of_curve(context, source, item) if item.type == "CURVE" else _of_mesh(context, source, item)
+        if _is_instance(item):
+            parts, solid, materials = _of_instance(context, source, item)
+        else:
+            parts, solid = _of_curve(context, source, item) if item.type == "CURVE" else _of_mesh(context, source, item)
         native.load().Shape(*[list(part) for part in parts])
     except native.load().InputError as error:
         raise BadInputError(f"'{source.name}': '{item.name}' is no shape: {outline_refusal(str(error))}") from error
-    return fitted(item.name, parts, _center(parts), solid)
+    return replace(fitted(item.name, parts, _center(parts), solid), materials=materials)
 
 
 def _center(parts: Parts) -> Reals:
@@ -113,6 +126,35 @@ def _of_mesh(context: bpy.types.Context, source: bpy.types.Object, item: bpy.typ
             raise BadInputError(f"'{source.name}': shape '{item.name}' has no faces; give it some, or take it away")
         solid = _solid(mesh, vertices)
     return _outline(vertices, triangles), solid
+
+
+def _of_instance(
+    context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object
+) -> tuple[Parts, Solid, tuple[str, ...]]:
+    """All meshes of a collection that an empty shows, as one, in the empty's scale; the names of their materials."""
+    solids: list[Solid] = []
+    lists: list[list[str]] = []
+    with evaluated(context, [item]) as (shown,):
+        back = np.linalg.inv(np.array(shown.matrix_world, np.float64))
+        scale = np.array(shown.matrix_world.to_scale()[:])
+        for instance in context.evaluated_depsgraph_get().object_instances:
+            if not instance.is_instance or instance.parent != shown or instance.object.type not in FACES:
+                continue
+            matrix = back @ np.array(instance.matrix_world, np.float64)
+            mesh = instance.object.to_mesh()
+            if len(mesh.polygons):
+                places = compat.read_positions(mesh).astype(np.float64)
+                solids.append(_solid(mesh, (places @ matrix[:3, :3].T + matrix[:3, 3]) * scale))
+                materials = shown_materials(instance.object, mesh)
+                lists.append([name_of(bpy.data.materials, material) for material in materials] or [""])
+            instance.object.to_mesh_clear()
+    if not solids or not all(np.isfinite(solid.vertices).all() for solid in solids):
+        raise BadInputError(
+            f"'{source.name}': shape '{item.name}' shows no faces; put a mesh into '{item.instance_collection.name}'"
+        )
+    solid = joined(solids, [len(names) for names in lists])
+    names = tuple(name for names in lists for name in names)
+    return _outline(solid.vertices, solid.corners[solid.parted()]), solid, names if any(names) else ()
 
 
 def _outline(vertices: Reals, triangles: Indices) -> Parts:

@@ -225,7 +225,10 @@ def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate
         compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
     else:
         _fill_flat(mesh, template)
-    mesh.materials.append(material_of(look, nodes.shapes_material))
+    for material in _own_materials(template) or [material_of(look, nodes.shapes_material)]:
+        mesh.materials.append(material)
+    if template.materials and template.solid is not None:
+        mesh.polygons.foreach_set("material_index", template.solid.material)
     item = bpy.data.objects.new(template.name, mesh)
     item[NAME] = item.name
     mark(item, source, f"{TEMPLATE_ROLE} {number}")
@@ -271,10 +274,17 @@ def add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate], look
     firsts = []
     for template in templates:
         firsts.append(len(mesh.materials))
-        own = _materials(find(bpy.data.objects, template.source))
+        own = _own_materials(template)
         for material in own if any(own) else [material_of(look, nodes.shapes_material)]:
             mesh.materials.append(material)
     return np.array(firsts, np.int32)
+
+
+def _own_materials(template: ShapeTemplate) -> list[bpy.types.Material | None]:
+    """Those of the object that it was read from, or of what a collection instance shows."""
+    if template.materials:
+        return [find(bpy.data.materials, name) for name in template.materials]
+    return _materials(find(bpy.data.objects, template.source))
 
 
 def _materials(item: bpy.types.Object | None) -> list[bpy.types.Material | None]:

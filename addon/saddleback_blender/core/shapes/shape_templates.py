@@ -54,6 +54,25 @@ class ShapeTemplate:
     # From the object's own space to the template's: shift (3,), then scale.
     shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
     scale: float = 1.0
+    materials: tuple[str, ...] = ()  # names of the solid's, where it has no one object that it was read from
+
+
+def joined(solids: Sequence[Solid], slots: Sequence[int]) -> Solid:
+    """Solids as one; each has its own `slots` of materials, one list after the other."""
+    vertices = np.cumsum([0, *(len(solid.vertices) for solid in solids)])
+    corners = np.cumsum([0, *(len(solid.corners) for solid in solids)])
+    first = np.cumsum([0, *slots])
+    return Solid(
+        vertices=np.concatenate([solid.vertices for solid in solids]),
+        corners=np.concatenate([solid.corners + vertices[i] for i, solid in enumerate(solids)]).astype(np.int32),
+        offsets=np.concatenate([[0], *(solid.offsets[1:] + corners[i] for i, solid in enumerate(solids))]).astype(
+            np.int32
+        ),
+        uv=np.concatenate([solid.uv for solid in solids]),
+        smooth=np.concatenate([solid.smooth for solid in solids]),
+        material=np.concatenate([solid.material + first[i] for i, solid in enumerate(solids)]).astype(np.int32),
+        triangles=np.concatenate([solid.parted() + corners[i] for i, solid in enumerate(solids)]).astype(np.int32),
+    )
 
 
 def sized(template: ShapeTemplate) -> ShapeTemplate:
