@@ -368,3 +368,18 @@ def add_asset_library(name: str, folder: Path) -> None:
         return
     bpy.ops.preferences.asset_library_add(directory=str(folder))
     libraries[-1].name = name
+
+
+def line_shader() -> Any:
+    """Blender's own shader for wide lines of one color: its name lost a prefix in 4.0."""
+    import gpu
+
+    return gpu.shader.from_builtin(
+        "3D_POLYLINE_UNIFORM_COLOR" if bpy.app.version < (4, 0) else "POLYLINE_UNIFORM_COLOR"
+    )
+
+
+def strokes_going_on(window: bpy.types.Window) -> bool:
+    """Tells whether a brush or a transform is under way in a window; from 4.2 on Blender says so."""
+    kinds = ("PAINT_", "SCULPT_", "TRANSFORM_", "GPENCIL_", "GREASE_PENCIL_", "CURVES_")
+    return any(operator.bl_idname.startswith(kinds) for operator in getattr(window, "modal_operators", ()))

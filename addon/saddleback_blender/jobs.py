@@ -72,6 +72,10 @@ class State:
         self.needs_repair = ""
         self.line = ""
         self.figures: list[str] = []
+        self.written = 0  # runs that changed the file
+        self.live: dict[str, str] = {}  # by object: what Auto Update is doing, or why it waits
+        self.live_asked: set[str] = set()  # objects whose Auto Update was switched on just now
+        self.live_ended = ""  # why it goes on no longer for an object that is gone
 
 
 state = State()
@@ -113,10 +117,15 @@ WINDOW_MANAGER_PROPERTIES = {
 
 def start(call: Callable[[Progress], Any], progress: Progress, name: str) -> Task:
     """Starts a task and shows it in the panel; the caller must end it with `finish`."""
+    state.task = start_unseen(call, progress, name)
+    return state.task
+
+
+def start_unseen(call: Callable[[Progress], Any], progress: Progress, name: str) -> Task:
+    """Starts a task that is in nobody's way."""
     _unfinished[:] = [task for task in _unfinished if not task.done]
     task = Task(call, progress, name)
     task.start()
-    state.task = task
     return task
 
 

@@ -16,6 +16,7 @@ from scenes import attribute, fingerprint, grid, select, sphere
 import saddleback as sb
 from saddleback_blender import jobs
 from saddleback_blender.bridge.inputs.mesh_in import read_surface
+from saddleback_blender.bridge.outputs import live_preview
 from saddleback_blender.core import cache
 from saddleback_blender.core.settings import DistanceSettings, DistributeSettings, TessellateSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
@@ -77,13 +78,12 @@ def pressed_live(**options):
 
 
 def wait_for_lines(operator, context, seconds=60.0):
-    """Sends timer events until lines are seen; returns the object that shows them."""
+    """Sends timer events until lines are seen; returns what shows them."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         assert operator.modal(context, TIMER) == {"PASS_THROUGH"}
-        shown = bpy.data.objects.get("Saddleback Live")
-        if shown is not None and len(shown.data.edges):
-            return shown
+        if live_preview.shown and len(live_preview.shown[0].ends):
+            return live_preview.shown[0]
         time.sleep(0.01)
     raise AssertionError("nothing was shown")
 
@@ -330,23 +330,19 @@ def test_a_live_run_shows_moving_cells_and_escape_leaves_nothing(item):
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
     shown = wait_for_lines(operator, context)
 
-    def places():
-        found = np.empty(3 * len(shown.data.vertices), np.float32)
-        shown.data.vertices.foreach_get("co", found)
-        return found
-
-    first = places()
+    first = shown.ends
     deadline = time.monotonic() + 30
-    while np.array_equal(places(), first):
+    while np.array_equal(shown.ends, first):
         assert time.monotonic() < deadline, "nothing moved"
         operator.modal(context, TIMER)
         time.sleep(0.005)
-    assert abs(places().reshape(-1, 3)[:, 2]).max() < 1e-6  # on the grid
+    assert abs(shown.ends[:, 2]).max() < 1e-6  # on the grid
+    assert fingerprint() == before  # what is drawn is nothing in the file
     task = operator._task
     assert operator.modal(context, ESC) == {"CANCELLED"}
     task.join()
     assert operator.messages == [("INFO", "Stopped; nothing was changed")]
-    assert "Saddleback Live" not in bpy.data.objects and context.timers == 0
+    assert not live_preview.shown and context.timers == 0
     assert fingerprint() == before
 
 
@@ -364,7 +360,7 @@ def test_enter_keeps_the_cells_as_they_are(item, monkeypatch):
     line = operator.messages[-1][1]  # quick fingers stop it before the first iteration
     assert "60 cells" in line and ("until it was stopped" in line or "stopped before the first iteration" in line)
     assert set(attribute(item, "saddleback_cell")) == set(range(60))
-    assert "Saddleback Live" not in bpy.data.objects and "Saddleback Live" not in bpy.data.meshes
+    assert not live_preview.shown
 
 
 def test_a_live_run_that_ends_by_itself_is_the_script_s(item):

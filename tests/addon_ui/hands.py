@@ -59,7 +59,15 @@ class Screen:
         self.sidebar.tag_redraw()
 
     def find_button(self, command):
-        """Where in the sidebar an operator's button is: just below the first place where its command can be copied."""
+        """Where in the sidebar an operator's button is, by its command."""
+        return (yield from self._find("copy_python_command_button", lambda copied: copied.startswith(command)))
+
+    def find_switch(self, name):
+        """Where in the sidebar a property is, by the end of its path."""
+        return (yield from self._find("copy_data_path_button", lambda copied: copied.endswith(name)))
+
+    def _find(self, copy, is_it):
+        """A place just below the first at which what Blender copies of what is under the mouse is sought."""
         clipboard = bpy.context.window_manager
         left, bottom = self.sidebar.x, self.sidebar.y
         x = left + self.sidebar.width // 2 - 20
@@ -67,12 +75,13 @@ class Screen:
             self.move(x, y)
             yield FRAME
             clipboard.clipboard = ""
+            operator = getattr(bpy.ops.ui, copy)
             with self.override(self.sidebar):
-                if bpy.ops.ui.copy_python_command_button.poll():
-                    bpy.ops.ui.copy_python_command_button()
-            if clipboard.clipboard.startswith(command):
+                if operator.poll():
+                    operator()
+            if is_it(clipboard.clipboard):
                 return x, y - 7  # into the middle: a press on the very edge may miss
-        raise AssertionError(f"no button for {command} in the sidebar")
+        raise AssertionError("what is sought is not in the sidebar")
 
     def click_until(self, place, is_done):
         """Clicks a button until something happens: the first click on a region may only wake it."""

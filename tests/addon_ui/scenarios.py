@@ -42,6 +42,7 @@ def _count_draw(_panel, context):
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
     made = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, dressed, layered)
+    made = (*made, followed)
     plays = (*made, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
@@ -333,6 +334,77 @@ def layered(screen):
     hidden = [item["saddleback_role"] for item in doll.children if item.hide_viewport]
     doll.saddleback.layers[0].show_viewport = True
     return {"names": names, "made": made, "hidden": hidden}
+
+
+def followed(screen):
+    """A dab of a brush, and the cells follow while the window stays awake; one step of Undo takes that back."""
+    from saddleback_blender.bridge.outputs import live_preview
+    from saddleback_blender.ops import live
+
+    with screen.override():
+        globe = add_object("Globe", *synthetic_cells.sphere(5))
+        globe.location.x = 3.0
+        globe.vertex_groups.new(name="Paint").add([0], 1.0, "REPLACE")
+        settings = globe.saddleback.tessellate
+        settings.density_source, settings.density_name, settings.count = "VERTEX_GROUP", "Paint", 200
+        bpy.ops.object.select_all(action="DESELECT")
+        globe.select_set(True)
+        bpy.ops.view3d.view_selected()
+        bpy.ops.saddleback.tessellate("INVOKE_DEFAULT")
+    yield from wait_until(lambda: not manager().saddleback_running, "the cells to be made")
+    with screen.override():
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        bpy.context.scene.tool_settings.unified_paint_settings.size = 40
+    screen.redraw()
+    yield 12 * FRAME
+    place = yield from screen.find_switch("auto_update")
+    yield from screen.click_until(place, lambda: bpy.data.objects["Globe"].saddleback.layers[0].auto_update)
+    at_rest = lambda: not bpy.app.timers.is_registered(live.tick)  # noqa: E731 - asked again and again
+    yield 4 * FRAME
+    yield from wait_until(at_rest, "the first update")
+    seconds, previews, before = [], [], _cells_of("Globe")
+    step, show = live.step, live_preview.LivePreview.show
+
+    def timed_step(context):
+        began = time.thread_time()
+        try:
+            return step(context)
+        finally:
+            seconds.append(time.thread_time() - began)
+
+    def noted_show(preview, lines):
+        previews.append(len(lines.vertices))
+        show(preview, lines)
+
+    live.step, live_preview.LivePreview.show = timed_step, noted_show
+    x, y = screen.view.x + screen.view.width // 2, screen.view.y + screen.view.height // 2
+    yield from screen.click(x, y)
+    yield from wait_until(lambda: previews, "a preview")
+    yield from screen.shoot("preview")
+    yield from wait_until(at_rest, "the cells to follow")
+    after = _cells_of("Globe")
+    yield from screen.shoot("followed")
+    live.step, live_preview.LivePreview.show = step, show
+    screen.move(screen.view.x + 200, screen.view.y + 300)
+    yield FRAME
+    screen.press("Z", ctrl=True)
+    yield 6 * FRAME
+    yield from wait_until(at_rest, "Undo to be taken as it is")
+    undone = _cells_of("Globe")
+    with screen.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return {
+        "seconds": max(seconds),
+        "previews": len(previews),
+        "changed": int((after != before).sum()),
+        "undone": bool((undone == before).all()),
+    }
+
+
+def _cells_of(name):
+    values = np.empty(len(bpy.data.objects[name].data.vertices), np.int32)
+    bpy.data.objects[name].data.attributes[CELL].data.foreach_get("value", values)
+    return values
 
 
 def show_panels(screen, names):

@@ -149,5 +149,12 @@ def test_a_second_layer_lies_beside_the_first(report):
     assert result["made"] == {"cells": False, "shapes": True} and result["hidden"] == ["cells"]
 
 
+def test_cells_follow_a_dab_of_the_brush(report):
+    result = seen(report, "followed")
+    assert result["previews"] > 0 and result["changed"] > 20
+    assert result["seconds"] < 0.1  # of the main thread, in one piece
+    assert result["undone"]
+
+
 def test_the_tab_says_what_to_do_without_a_mesh(report):
     assert seen(report, "refused")["drawn"] > 0

@@ -41,7 +41,7 @@ def offenders(paths: list[Path], wrong) -> list[str]:
     return found
 
 
-BLENDER = {"bpy", "bpy_extras", "bmesh", "mathutils", "gpu", "blf", "addon_utils"}
+BLENDER = {"bpy", "bpy_extras", "bmesh", "mathutils", "gpu", "gpu_extras", "blf", "addon_utils"}
 
 
 def is_blender(name: str) -> bool:

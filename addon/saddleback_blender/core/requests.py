@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .disk_cache import DiskCache
+from .flowing_cells import FlowingCells
 from .live_cells import LiveCells
 from .results import Indices, Reals
 from .settings import (
@@ -109,6 +111,32 @@ def digest(*parts: object) -> str:
     return hashed.hexdigest()
 
 
+def content_of(call: object) -> str:
+    """One short name for what a run, a `partial` with its request, does: equal where it would do the same. O(size)."""
+    return digest(*_content(call))
+
+
+def _content(value: object) -> Iterator[object]:
+    if isinstance(value, (DiskCache, LiveCells, FlowingCells)):
+        return
+    if isinstance(value, partial):
+        yield value.func.__qualname__
+        yield from _content(value.args)
+    elif isinstance(value, Surface):
+        yield from (value.key, value.vertex_count, value.used, value.kept)
+    elif is_dataclass(value):
+        for field in fields(value):
+            yield field.name
+            if field.name != "threads":
+                yield from _content(getattr(value, field.name))
+    elif isinstance(value, (tuple, list)):
+        yield len(value)
+        for part in value:
+            yield from _content(part)
+    else:
+        yield value
+
+
 Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places in the world (n, 3)
 
 
@@ -174,6 +202,7 @@ class TessellateRequest:
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     live: LiveCells | None = None  # shown the cells while they are relaxed
+    flowing: FlowingCells | None = None  # cells to go on from
 
 
 @dataclass(frozen=True)

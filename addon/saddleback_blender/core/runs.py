@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,6 +16,7 @@ from .cache import Cache
 from .cell_runs import cells_of, shape_of
 from .density_runs import density_of
 from .fields.curve_points import curves_on_surface, points_along
+from .flowing_cells import UNSEEN
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .lengths import RIB_SHARE
 from .progress import Progress
@@ -30,8 +32,6 @@ from .surfaces.duals import dual_of, figures_of
 from .surfaces.features import feature_lines
 from .surfaces.normals import normals_at
 from .surfaces.surface_places import compact_points, surface_points
-
-UNSEEN = 1e-3  # of a cell's size: sites that would move by less while they are watched rest
 
 
 def new_progress() -> Progress:
@@ -86,7 +86,7 @@ def solved_cells(
     density = density_of(request.density, surface, settings, mesh, lambda: graph, progress)
     moves = sites is None or settings.relax_sites
     iterations = settings.iterations if moves else 0
-    what = digest(
+    frame = digest(
         settings.count if sites is None else sites,
         settings.seed if sites is None else 0,
         iterations,
@@ -94,15 +94,17 @@ def solved_cells(
         _starts(request),
         _annealing(request, iterations),
         _closed_ball(request, iterations),
-        density if sites is None or iterations else None,
         *_held(request),
     )
+    what = digest(frame, density if sites is None or iterations else None)
     key = (choice.name(surface), what)
 
     def solve() -> Solved:
         return _solve(request, mesh, graph, sites, density, iterations, progress)
 
-    if request.live is None:
+    if request.flowing is not None and sites is None and iterations:
+        key, solved = _flow(request, (key[0], frame), what, mesh, graph, density, solve, progress, cache)
+    elif request.live is None:
         solved = cache.get(("cells", *key), solve, _solved_bytes)
     else:  # to be looked at, however often it ran before, and perhaps stopped on the way
         solved = solve()
@@ -241,11 +243,58 @@ def _solve(
         with progress.stage(0.9, "finding the cells") as job:
             cells = sb.geodesic_voronoi(graph, points, threads=request.threads, job=job)
     progress.check()
+    return Solved(cells, *_places(mesh, cells), energy, done, reason, normalized, exchanged)
+
+
+def _places(mesh: Any, cells: Any) -> tuple[Reals, Reals]:
+    """Where the sites (n, 3) are, and the normals (n, 3) there."""
     faces, barycentric = cells.sites.faces, cells.sites.barycentric
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
-    normals = normals_at(vertices, triangles, faces, barycentric)
-    return Solved(cells, positions, normals, energy, done, reason, normalized, exchanged)
+    return positions, normals_at(vertices, triangles, faces, barycentric)
+
+
+def _flow(
+    request: TessellateRequest,
+    frame: tuple[str, str],
+    what: str,
+    mesh: Any,
+    graph: Any,
+    density: Reals | None,
+    solve: Callable[[], Solved],
+    progress: Progress,
+    cache: Cache,
+) -> tuple[tuple[str, str], Solved]:
+    """Cells that go on from the last ones where only the density is another, and the key of what is made of them.
+
+    Else they are those of any other run, after a sketch of them.
+    """
+    flowing, key = request.flowing, (frame[0], what)
+    assert flowing is not None
+    flow_key = (frame[0], digest(what, flowing.word))
+    known = [found for found in (key, flow_key) if ("cells", *found) in cache]
+    flows = not known and flowing.sites(frame) is not None and not _has_lines(request)
+
+    def flow() -> Solved:
+        made = flowing.flow(frame, graph, density, request.settings, request.threads, progress)
+        places = _places(mesh, made.cells)
+        return Solved(
+            made.cells, *places, made.energy, made.iterations, made.stop_reason, made.normalized_energy, exchanged=0
+        )
+
+    if not known and not flows:
+        flowing.sketch(graph, density, request.settings, request.threads, progress)
+    key = known[0] if known else flow_key if flows else key
+    solved = cache.get(("cells", *key), flow if flows else solve, _solved_bytes)
+    flowing.keep(frame, solved.cells)
+    return key, solved
+
+
+def _has_lines(request: TessellateRequest) -> bool:
+    """Tells whether sites are held on lines, or moved for the sake of the dual mesh."""
+    settings = request.settings
+    is_held = settings.hold_sharp or settings.hold_boundary or request.marked_edges is not None
+    return is_held or _closed_ball(request, settings.iterations)
 
 
 def _result(request: TessellateRequest, solved: Solved, density: Reals | None) -> CellsResult:

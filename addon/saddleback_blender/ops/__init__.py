@@ -14,6 +14,7 @@ from . import (
     distribute,
     export_stl,
     layers,
+    live,
     look_presets,
     paint,
     path,
@@ -45,9 +46,11 @@ def register() -> None:
     """Makes everything of this module known to Blender."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
+    live.register()
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
+    live.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

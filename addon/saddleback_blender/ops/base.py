@@ -283,6 +283,7 @@ class SurfaceOperator(PolledOperator):
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         self._is_filled = True
+        jobs.state.written += 1
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
         jobs.state.figures = [*lengths, *figures]
         followed = [] if self._follower is None else self._follower.notes()

@@ -28,14 +28,8 @@ from .base import ALL_SELECTED, SurfaceOperator
 KINDS = {1: "vectors", 2: "lines", 4: "crosses"}
 
 
-class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
-    """Makes a field."""
-
-    bl_idname = "saddleback.direction_field"
-    bl_label = "Direction Field"
-    bl_description = "Comb the surface of the active object: directions that follow strokes and turn where you say"
-    bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = DIRECTION_FIELD | ALL_SELECTED
+class FieldOperator(SurfaceOperator):
+    """Mixin: makes a field."""
 
     settings_name = "direction_field"
 
@@ -83,6 +77,16 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
         if result.largest_turn >= math.pi / result.symmetry:
             notes.append("The field turns faster than the faces can show; subdivide the mesh where it is singular")
         return notes
+
+
+class SADDLEBACK_OT_direction_field(FieldOperator, bpy.types.Operator):
+    """Makes a field."""
+
+    bl_idname = "saddleback.direction_field"
+    bl_label = "Direction Field"
+    bl_description = "Comb the surface of the active object: directions that follow strokes and turn where you say"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = DIRECTION_FIELD | ALL_SELECTED
 
 
 def _told(result: FieldResult) -> str:

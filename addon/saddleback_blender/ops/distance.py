@@ -29,14 +29,8 @@ from ..props.distance import DISTANCE
 from .base import ALL_SELECTED, SurfaceOperator
 
 
-class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
-    """Measures distances."""
-
-    bl_idname = "saddleback.distance"
-    bl_label = "Distance"
-    bl_description = "Measure along the surface how far each vertex of the active object is from the nearest source"
-    bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = DISTANCE | ALL_SELECTED
+class DistanceOperator(SurfaceOperator):
+    """Mixin: measures distances."""
 
     settings_name = "distance"
 
@@ -83,6 +77,16 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
             self.report({"WARNING"}, warning)
         lines = "" if result.isolines is None else f", {_count(len(set(result.isolines.level)), 'isoline')}"
         return f"'{source.name}': {int(reached.sum())} vertices reached, the farthest at {farthest:.4g}{lines}"
+
+
+class SADDLEBACK_OT_distance(DistanceOperator, bpy.types.Operator):
+    """Measures distances."""
+
+    bl_idname = "saddleback.distance"
+    bl_label = "Distance"
+    bl_description = "Measure along the surface how far each vertex of the active object is from the nearest source"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = DISTANCE | ALL_SELECTED
 
 
 def _count(number: int, what: str) -> str:

@@ -50,14 +50,8 @@ from .base import ALL_SELECTED, SurfaceOperator
 from .paint import HelperOperator
 
 
-class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
-    """Lays shapes."""
-
-    bl_idname = "saddleback.distribute"
-    bl_label = "Distribute Shapes"
-    bl_description = "Lay shapes on the surface of the active object: along its direction field, none touching another"
-    bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = DISTRIBUTE | ALL_SELECTED
+class ShapesOperator(SurfaceOperator):
+    """Mixin: lays shapes."""
 
     settings_name = "distribute"
 
@@ -122,6 +116,16 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
     def figures(self, result: DistributeResult) -> list[str]:
         """Returns how dense it is, and why no more found room."""
         return list(result.lines)
+
+
+class SADDLEBACK_OT_distribute(ShapesOperator, bpy.types.Operator):
+    """Lays shapes."""
+
+    bl_idname = "saddleback.distribute"
+    bl_label = "Distribute Shapes"
+    bl_description = "Lay shapes on the surface of the active object: along its direction field, none touching another"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = DISTRIBUTE | ALL_SELECTED
 
 
 class SADDLEBACK_OT_check_distribution(SurfaceOperator, bpy.types.Operator):

@@ -22,14 +22,8 @@ from ..props.path import PATH
 from .base import SurfaceOperator
 
 
-class SADDLEBACK_OT_path(SurfaceOperator, bpy.types.Operator):
-    """Finds paths."""
-
-    bl_idname = "saddleback.path"
-    bl_label = "Path"
-    bl_description = "Find the shortest way along the surface of the active object from point to point, as a curve"
-    bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(PATH)
+class PathOperator(SurfaceOperator):
+    """Mixin: finds paths."""
 
     settings_name = "path"
 
@@ -54,6 +48,16 @@ class SADDLEBACK_OT_path(SurfaceOperator, bpy.types.Operator):
         write_paths(context, source, result, settings.path_radius, settings.lift, self.follower(context, source))
         keep_settings(chosen, "path", source)
         return f"'{source.name}': {_told(result)}"
+
+
+class SADDLEBACK_OT_path(PathOperator, bpy.types.Operator):
+    """Finds paths."""
+
+    bl_idname = "saddleback.path"
+    bl_label = "Path"
+    bl_description = "Find the shortest way along the surface of the active object from point to point, as a curve"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(PATH)
 
 
 def _told(result: PathsResult) -> str:

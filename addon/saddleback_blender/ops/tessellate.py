@@ -22,6 +22,7 @@ from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_attributes import write_vertex_attributes
 from ..bridge.outputs.out_cells import CELLS_ROLE, write_cells
 from ..bridge.outputs.out_centers import CENTERS_ROLE, write_centers
+from ..bridge.outputs.out_collection import hair
 from ..bridge.outputs.out_dual import DUAL_ROLE, write_dual
 from ..bridge.outputs.out_edges import EDGES_ROLE, write_edges
 from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
@@ -29,6 +30,7 @@ from ..bridge.outputs.output_surface import check_attribute_names, output_surfac
 from ..core import mirrored_runs, runs
 from ..core.errors import BadInputError
 from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of, shell_of
+from ..core.flowing_cells import FlowingCells
 from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
 from ..core.mirrored_runs import halved
@@ -36,6 +38,7 @@ from ..core.progress import Progress
 from ..core.requests import Surface, TessellateRequest
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
+from ..core.standing import with_anchors
 from ..props import keep_settings, settings_of
 from ..props.tessellate import TESSELLATE
 from .base import ALL_SELECTED, SurfaceOperator
@@ -78,6 +81,7 @@ class CellsOperator(SurfaceOperator):
 
     settings_name = "tessellate"
     thickness: float
+    flowing: FlowingCells | None = None  # cells to go on from
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
@@ -91,11 +95,13 @@ class CellsOperator(SurfaceOperator):
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             request = read_request(context, source, mesh, settings, self.measured)
             mirror = read_mirror(source, mesh, request.surface) if settings.mirror_x else None
-        request = replace(request, live=live)
+        request = replace(request, live=live, flowing=self.flowing)
         if mirror is not None:
             self._surface = mirror.whole  # on which all of it lies
-            return partial(mirrored_runs.tessellate, halved(request, mirror), mirror)
-        return partial(runs.tessellate, request)
+            run = partial(mirrored_runs.tessellate, halved(request, mirror), mirror)
+        else:
+            run = partial(runs.tessellate, request)
+        return partial(with_anchors, run, self._surface, request.settings)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: CellsResult) -> str:
         """Writes the result into Blender."""
@@ -174,9 +180,8 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
         return self._gather(context, source, self._live)
 
     def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
-        """Makes the object that shows the cells."""
-        radius = self._lengths["edge_radius"] if self._lengths else self.edge_radius
-        self._preview = LivePreview(context, source, radius)
+        """Begins to show the cells."""
+        self._preview = LivePreview(hair(source))
 
     def show_newest(self) -> None:
         """Shows the latest cells."""

@@ -35,16 +35,11 @@ from .base import ALL_SELECTED, SurfaceOperator
 EDGES_ROLE, CELLS_ROLE, CENTERS_ROLE = "voronoi edges", "voronoi cells", "voronoi centers"
 
 
-class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
-    """Makes plane diagrams."""
-
-    bl_idname = "saddleback.voronoi_2d"
-    bl_label = "Voronoi 2D"
-    bl_description = "Divide a flat mesh, or a surface through its UV map, into the cells of a plane Voronoi diagram"
-    bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = VORONOI_2D | ALL_SELECTED
+class PlaneOperator(SurfaceOperator):
+    """Mixin: makes plane diagrams."""
 
     settings_name = "voronoi_2d"
+    thickness: float
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Voronoi2dResult]:
         """Reads everything from Blender."""
@@ -104,6 +99,16 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
     def notes(self, result: Voronoi2dResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
         return [] if result.cells.mesh is None else cell_faults_of(result.cells.mesh)
+
+
+class SADDLEBACK_OT_voronoi_2d(PlaneOperator, bpy.types.Operator):
+    """Makes plane diagrams."""
+
+    bl_idname = "saddleback.voronoi_2d"
+    bl_label = "Voronoi 2D"
+    bl_description = "Divide a flat mesh, or a surface through its UV map, into the cells of a plane Voronoi diagram"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = VORONOI_2D | ALL_SELECTED
 
 
 def _space(surface: Surface, mesh: bpy.types.Mesh, settings: Voronoi2dSettings) -> str:

@@ -85,6 +85,18 @@ BEGIN: dict[str, dict[str, Any]] = {
 }
 
 
+def _tell_live(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Lets Auto Update see a change of a setting, which by itself changes nothing that Blender shows."""
+    layer = layers.active_layer(group.id_data)
+    if layer is not None and layer.auto_update:
+        group.id_data.update_tag()
+
+
+def _followed(prop: Any, own: dict[str, Any]) -> Any:
+    """The same property with keywords of its own, whose changes Auto Update sees."""
+    return prop.function(**(prop.keywords | own | {"update": _tell_live}))
+
+
 def _kept(settings_name: str) -> dict[str, Any]:
     """Makes the same properties for an object to keep: named objects, collections and images become pointers."""
     begin = BEGIN.get(settings_name, {})
@@ -103,12 +115,11 @@ def _kept(settings_name: str) -> dict[str, Any]:
             continue
         if name in pointers:
             kept[name] = PointerProperty(
-                type=pointers[name], name=prop.keywords["name"], description=prop.keywords["description"]
-            )
-        elif name in begin:
-            kept[name] = prop.function(**(prop.keywords | {"default": begin[name]}))
+                type=pointers[name], name=prop.keywords["name"], description=prop.keywords["description"],
+                update=_tell_live,
+            )  # fmt: skip
         else:
-            kept[name] = prop
+            kept[name] = _followed(prop, {"default": begin[name]} if name in begin else {})
     return kept | ({"evenness": EVENNESS} if settings_name == "tessellate" else {})
 
 
@@ -200,7 +211,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         ),
         "layer_index": layers.INDEX,
         "layer_word": layers.WORD,
-        **LAYER_SETTINGS,
+        **{name: _followed(prop, {}) for name, prop in LAYER_SETTINGS.items()},
         "layout_number": IntProperty(name="Layout", description="Of these settings", options={"HIDDEN"}),
     }
 

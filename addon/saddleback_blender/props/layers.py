@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, IntProperty, PointerProperty, StringProperty
 
-from .. import rollback
+from .. import jobs, rollback
 from ..bridge.outputs.layer_visibility import show_layer
 from ..core.errors import BadInputError
 from ..looks import NO_LOOK
@@ -32,6 +32,11 @@ def _show(layer: Any, _context: bpy.types.Context) -> None:
     show_layer(layer.id_data, layer)
 
 
+def _ask(layer: Any, _context: bpy.types.Context) -> None:
+    if layer.auto_update:
+        jobs.state.live_asked.add(layer.id_data.name)
+
+
 def _choose(props: Any, _context: bpy.types.Context) -> None:
     source = props.id_data
     if 0 <= props.layer_index < len(props.layers):
@@ -39,7 +44,7 @@ def _choose(props: Any, _context: bpy.types.Context) -> None:
 
 
 # What a layer has beside settings.
-OWN = ("name", "word", "given_name", "number", "is_frozen", "show_viewport", "show_render")
+OWN = ("name", "word", "given_name", "number", "is_frozen", "auto_update", "show_viewport", "show_render")
 
 
 def layer_annotations(groups: dict[str, type]) -> dict[str, Any]:
@@ -52,6 +57,11 @@ def layer_annotations(groups: dict[str, type]) -> dict[str, Any]:
         "is_frozen": BoolProperty(
             name="Frozen", description="What was made is no longer Saddleback's: it stays as it is",
             options={"HIDDEN"},
+        ),
+        "auto_update": BoolProperty(
+            name="Auto Update", default=False, update=_ask,
+            description="Make anew what was made in this layer whenever its settings, its mesh, paint, strokes or "
+            "empties change, while the layer is the chosen one",
         ),
         "show_viewport": BoolProperty(
             name="Show in Viewport", description="Show what was made in this layer in the viewport", default=True,

@@ -10,7 +10,7 @@ from .. import compat
 from ..bridge.inputs.source import active_object, why_not
 from ..bridge.outputs.out_looks import is_hidden
 from ..core import native
-from . import layer_rows, look_rows, rows
+from . import layer_rows, live_rows, look_rows, rows
 from .texts import draw_text
 
 
@@ -70,6 +70,7 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         column.enabled = not context.window_manager.saddleback_running
         layer_rows.draw_layers(column, item)
         layer_rows.draw_region(column, item)
+        live_rows.draw_live(layout, context, item)
         look_rows.draw_looks(layout, item)
         layout.label(text=item.name, icon="OUTLINER_OB_MESH")
         if sum(other.type == "MESH" for other in context.view_layer.objects.selected) > 1:

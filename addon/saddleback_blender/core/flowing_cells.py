@@ -1,0 +1,102 @@
+"""Cells that go on from where they were, run after run, while what says where they are small changes."""
+
+from __future__ import annotations
+
+import uuid
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import native
+from .live_cells import LiveStep
+from .progress import Progress
+from .results import Reals
+from .settings import TessellateSettings
+from .solids.edge_network import edge_network
+
+# Of a cell's size: sites that would move by less rest, and their cells are not found anew. Less than one sees.
+UNSEEN = 1e-3
+
+
+@dataclass(frozen=True)
+class Relaxed:
+    """Cells after some iterations."""
+
+    cells: Any
+    energy: Reals
+    iterations: int
+    stop_reason: str
+    normalized_energy: float
+
+
+class FlowingCells:
+    """Keeps the cells of one layer. The thread of a run lets them flow; any other takes what is new with `newest`.
+
+    `frame` names all that decides on the cells but the density. While it stays the same, cells go on from where they
+    are, so that only those change about which the density does.
+    """
+
+    def __init__(self) -> None:
+        self.word = uuid.uuid4().hex  # tells what was made of its cells from what others made
+        self._newest: LiveStep | None = None
+        self._frame = ("", "")
+        self._sites: Any = None
+
+    def newest(self) -> LiveStep | None:
+        """The latest lines between cells, None where they were taken before."""
+        step, self._newest = self._newest, None
+        return step
+
+    def sites(self, frame: tuple[str, str]) -> Any:
+        """Where cells of this frame are by now; None where there are none."""
+        return self._sites if self._frame == frame else None
+
+    def keep(self, frame: tuple[str, str], cells: Any) -> None:
+        """Notes cells to go on from."""
+        self._frame, self._sites = frame, cells.sites
+
+    def show(self, cells: Any, iterations: int) -> None:
+        """Lets another thread see cells."""
+        closed = np.asarray(cells.edge_closed, bool)
+        self._newest = LiveStep(
+            edge_network(cells.edge_points, cells.edge_offsets, cells.edge_cells, closed), iterations
+        )
+
+    def sketch(
+        self, graph: Any, density: Reals | None, settings: TessellateSettings, threads: int, progress: Progress
+    ) -> None:
+        """Shows cells of this number that are not even yet."""
+        with progress.stage(0.6, "finding the cells") as job:
+            cvt = native.load().centroidal_voronoi(
+                graph, count=settings.count, density=density, max_iterations=1, seed=settings.seed, start="sample",
+                threads=threads, job=job,
+            )  # fmt: skip
+        self.show(cvt.cells, 1)
+
+    def flow(
+        self,
+        frame: tuple[str, str],
+        graph: Any,
+        density: Reals | None,
+        settings: TessellateSettings,
+        threads: int,
+        progress: Progress,
+    ) -> Relaxed:
+        """Evens out the cells of this frame by a density, in calls that are longer and longer: each is shown."""
+        sb = native.load()
+        cells, done, steps = sb.CellCache(), 0, 1
+        while True:
+            end = 0.5 + 0.4 * min(1.0, (done + steps) / settings.iterations)
+            with progress.stage(end, "evening out the cells") as job:
+                cvt = sb.centroidal_voronoi(
+                    graph, sites=self._sites, density=density, method=settings.method.lower(), max_iterations=steps,
+                    least_move=UNSEEN, cache=cells, threads=threads, job=job,
+                )  # fmt: skip
+            self.keep(frame, cvt.cells)
+            done += int(cvt.iterations)
+            self.show(cvt.cells, done)
+            if cvt.iterations < steps or done >= settings.iterations:
+                energy = np.asarray(cvt.energy, np.float64)
+                return Relaxed(cvt.cells, energy, done, str(cvt.stop_reason), float(cvt.normalized_energy))
+            steps = min(2 * steps, settings.iterations - done)

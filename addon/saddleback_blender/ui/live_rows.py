@@ -1,0 +1,22 @@
+"""The switch of Auto Update, and what it has to say."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import jobs
+from ..props.layers import active_layer
+from .texts import draw_text
+
+
+def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.Object) -> None:
+    """Of the active layer. Sentences that were told stay until there is something else."""
+    layer = active_layer(item)
+    if layer is None or layer.is_frozen:
+        return
+    layout.prop(layer, "auto_update", toggle=True, icon="FILE_REFRESH")
+    text = jobs.state.live.get(item.name, "") if layer.auto_update else ""
+    if text:
+        draw_text(layout, context, text, "INFO")
+    elif jobs.state.live_ended:
+        draw_text(layout, context, jobs.state.live_ended, "INFO")
