@@ -74,6 +74,7 @@ class State:
         self.figures: list[str] = []
         self.written = 0  # runs that changed the file
         self.live: dict[str, str] = {}  # by object: what Auto Update is doing, or why it waits
+        self.live_running: tuple[str, int] | None = None  # the object whose run goes on, and how many percent are done
         self.live_asked: set[str] = set()  # objects whose Auto Update was switched on just now
         self.live_ended = ""  # why it goes on no longer for an object that is gone
 
@@ -151,6 +152,12 @@ def stop_all(seconds: float = 5.0) -> None:
     _unfinished.clear()
     state.task = None
     look()
+
+
+def note_setting(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Lets Auto Update see a change of a setting, which by itself changes nothing that Blender shows."""
+    if state.live:
+        group.id_data.update_tag()
 
 
 def redraw(context: bpy.types.Context) -> None:

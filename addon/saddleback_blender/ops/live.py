@@ -61,14 +61,13 @@ class Live:
         self.changed_at = self.read_until = 0.0
         self.written = 0  # runs that others made
 
-    def stop(self, text: str = "") -> None:
+    def stop(self) -> None:
         """Cancels the run, without waiting; nothing of it is in the file."""
         if self.operator is not None:
             self.operator.task.cancel()
         if self.preview is not None:
             self.preview.remove()
-        if self.target is not None:
-            jobs.state.live[self.target.name] = text
+        jobs.state.live_running = None
         self.operator = self.target = self.preview = None
 
     def forget(self) -> None:
@@ -104,10 +103,11 @@ def step(context: bpy.types.Context) -> float | None:
     return STEP
 
 
-def _tell(context: bpy.types.Context, watched: Watched, text: str) -> None:
-    """Lets the panel say what is going on."""
-    if jobs.state.live.get(watched.name, "") != text:
-        jobs.state.live[watched.name] = text
+def _tell(context: bpy.types.Context, watched: Watched, text: str, percent: int | None = None) -> None:
+    """Lets the panel say what is going on: a sentence, or how far a run is."""
+    running = None if percent is None else (watched.name, percent)
+    if (jobs.state.live.get(watched.name, ""), jobs.state.live_running) != (text, running):
+        jobs.state.live[watched.name], jobs.state.live_running = text, running
         jobs.redraw(context)
 
 
@@ -118,7 +118,7 @@ def _look_around(context: bpy.types.Context) -> None:
         if item.type == "MESH" and item.library is None and item.is_property_set("saddleback"):
             layer = active_layer(item)
             if layer is not None and layer.auto_update and not layer.is_frozen:
-                found[compat.identity(item) or item.as_pointer()] = item
+                found[_key(item)] = item
     for key in live.watched.keys() - found.keys():
         lost = live.watched.pop(key)
         twin = next((new for new, item in found.items() if item.name == lost.name), None)
@@ -133,12 +133,18 @@ def _look_around(context: bpy.types.Context) -> None:
             watched.inputs, watched.is_changed = inputs_of(item), True
             watched.is_accepted = item.name not in jobs.state.live_asked
             jobs.state.live_asked.discard(item.name)
+            jobs.state.live.setdefault(item.name, "")
         elif watched.name != item.name:
             if live.target is watched:  # the run knows it by its name
                 live.stop()
                 watched.is_changed = True
-            jobs.state.live.pop(watched.name, None)
+            jobs.state.live[item.name] = jobs.state.live.pop(watched.name, "")
             watched.name, watched.inputs = item.name, inputs_of(item)
+
+
+def _key(item: bpy.types.ID) -> int:
+    """What stays while an object is renamed."""
+    return compat.identity(item) or int(item.as_pointer())
 
 
 def _end_watching(watched: Watched) -> None:
@@ -184,7 +190,7 @@ def _go_on(context: bpy.types.Context, reason: str) -> None:
     if may_read and not _is_current(context, target, operator):
         return
     if not task.done:
-        _tell(context, target, f"{task.progress.text or 'begins'} {100 * task.progress.fraction:.0f} %")
+        _tell(context, target, "", int(100 * task.progress.fraction))
     elif not reason and time.perf_counter() - live.changed_at >= REST and not _is_stroking(context):
         _write(context, target, operator)
 
@@ -305,9 +311,10 @@ def tick() -> float | None:
         with bpy.context.temp_override(window=windows[0]) if windows else nullcontext():
             return step(bpy.context)
     except Exception:
-        live.stop("stopped by a fault of Saddleback's own; the console tells more")
+        live.stop()
         for watched in live.watched.values():
             watched.is_changed = False
+            jobs.state.live[watched.name] = "stopped by a fault of Saddleback's own; the console tells more"
         raise
 
 
@@ -323,11 +330,11 @@ def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     if live.is_writing or depsgraph.mode == "RENDER" or not (live.watched or jobs.state.live_asked):
         return
     changed = [update.id.original for update in depsgraph.updates]
-    names = {name_of_input(block) for block in changed}
+    names, keys = {name_of_input(block) for block in changed}, {_key(block) for block in changed}
     found = [
         watched
-        for watched in live.watched.values()
-        if names & watched.inputs or any(is_child(block, watched.name) for block in changed)
+        for key, watched in live.watched.items()
+        if key in keys or names & watched.inputs or any(is_child(block, watched.name) for block in changed)
     ]
     for watched in found:
         watched.is_changed = True

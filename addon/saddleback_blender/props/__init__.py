@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import bpy
 from bpy.props import CollectionProperty, IntProperty, PointerProperty, StringProperty
 
-from .. import rollback
+from .. import jobs, rollback
 from ..blocks import find, name_of
 from ..core.lengths import SHARE
 from ..core.settings import (
@@ -85,16 +85,9 @@ BEGIN: dict[str, dict[str, Any]] = {
 }
 
 
-def _tell_live(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-    """Lets Auto Update see a change of a setting, which by itself changes nothing that Blender shows."""
-    layer = layers.active_layer(group.id_data)
-    if layer is not None and layer.auto_update:
-        group.id_data.update_tag()
-
-
 def _followed(prop: Any, own: dict[str, Any]) -> Any:
     """The same property with keywords of its own, whose changes Auto Update sees."""
-    return prop.function(**(prop.keywords | own | {"update": _tell_live}))
+    return prop.function(**(prop.keywords | own | {"update": jobs.note_setting}))
 
 
 def _kept(settings_name: str) -> dict[str, Any]:
@@ -116,7 +109,7 @@ def _kept(settings_name: str) -> dict[str, Any]:
         if name in pointers:
             kept[name] = PointerProperty(
                 type=pointers[name], name=prop.keywords["name"], description=prop.keywords["description"],
-                update=_tell_live,
+                update=jobs.note_setting,
             )  # fmt: skip
         else:
             kept[name] = _followed(prop, {"default": begin[name]} if name in begin else {})

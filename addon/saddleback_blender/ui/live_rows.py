@@ -14,7 +14,10 @@ def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.
     layer = active_layer(item)
     if layer is None or layer.is_frozen:
         return
-    layout.prop(layer, "auto_update", toggle=True, icon="FILE_REFRESH")
+    label, running = bpy.app.translations.pgettext_iface("Auto Update"), jobs.state.live_running
+    if running is not None and running[0] == item.name:  # here, since a line of its own would push all below to and fro
+        label = f"{label} {running[1]} %"
+    layout.prop(layer, "auto_update", text=label, translate=False, toggle=True, icon="FILE_REFRESH")
     text = jobs.state.live.get(item.name, "") if layer.auto_update else ""
     if text:
         draw_text(layout, context, text, "INFO")

@@ -217,6 +217,10 @@ def test_a_renamed_object_goes_on(item):
     steps()
     assert not np.array_equal(cells(item), before)
     assert jobs.state.live == {"Ball": ""} and not jobs.state.live_ended
+    item.name = "Globe"  # while nothing goes on
+    item.saddleback.tessellate.count = 20
+    steps()
+    assert cells(item).max() == 19
 
 
 def test_undo_is_taken_as_it_is(item, monkeypatch):
