@@ -72,7 +72,7 @@ class State:
         self.needs_repair = ""
         self.line = ""
         self.figures: list[str] = []
-        self.written = 0  # runs that changed the file
+        self.written: set[str] = set()  # objects for which runs wrote what Auto Update has not seen yet
         self.live: dict[str, str] = {}  # by object: what Auto Update is doing, or why it waits
         self.live_running: tuple[str, int] | None = None  # the object whose run goes on, and how many percent are done
         self.live_asked: set[str] = set()  # objects whose Auto Update was switched on just now

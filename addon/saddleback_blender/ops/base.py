@@ -248,6 +248,8 @@ class SurfaceOperator(PolledOperator):
             raise task.error
         try:
             source = self._source.find(context)
+            if self.makes_layers:
+                check_layer(source)
             if layer_of(source) != self._layer:
                 raise BadInputError(
                     f"'{source.name}': another layer was chosen during the run, so nothing was written: run again"
@@ -283,7 +285,7 @@ class SurfaceOperator(PolledOperator):
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         self._is_filled = True
-        jobs.state.written += 1
+        jobs.state.written.add(source.name)
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
         jobs.state.figures = [*lengths, *figures]
         followed = [] if self._follower is None else self._follower.notes()

@@ -59,7 +59,7 @@ class Live:
         self.has_shown = False
         self.is_writing = False
         self.changed_at = self.read_until = 0.0
-        self.written = 0  # runs that others made
+        self.has_news = False  # objects may have come or gone
 
     def stop(self) -> None:
         """Cancels the run, without waiting; nothing of it is in the file."""
@@ -84,7 +84,8 @@ live = Live()
 def step(context: bpy.types.Context) -> float | None:
     """Does what is next; returns the seconds until the next step, None where there is nothing to be done."""
     _accept_others()
-    _look_around(context)
+    if live.has_news or any(_is_lost(key, watched) for key, watched in live.watched.items()):
+        _look_around(context)
     reason = _waits_for(context)
     if reason == "RUN" and live.target is not None:
         live.target.is_changed = True
@@ -111,8 +112,14 @@ def _tell(context: bpy.types.Context, watched: Watched, text: str, percent: int 
         jobs.redraw(context)
 
 
+def _is_lost(key: int, watched: Watched) -> bool:
+    item = bpy.data.objects.get(watched.name)
+    return item is None or _key(item) != key
+
+
 def _look_around(context: bpy.types.Context) -> None:
     """Finds the objects that are to be watched, and those that are there no longer."""
+    live.has_news = False
     found: dict[int, bpy.types.Object] = {}
     for item in context.view_layer.objects:
         if item.type == "MESH" and item.library is None and item.is_property_set("saddleback"):
@@ -157,14 +164,14 @@ def _end_watching(watched: Watched) -> None:
 
 def _accept_others() -> None:
     """Takes what a button, a script or Adjust Last Operation has written for what belongs to what is there."""
-    if live.written != jobs.state.written:
-        live.written = jobs.state.written
-        _accept_all()
+    _accept([watched for watched in live.watched.values() if watched.name in jobs.state.written])
+    jobs.state.written.clear()
 
 
-def _accept_all() -> None:
-    live.stop()
-    for watched in live.watched.values():
+def _accept(every: list[Watched]) -> None:
+    for watched in every:
+        if watched is live.target:
+            live.stop()
         watched.is_changed = watched.is_accepted = True
 
 
@@ -253,6 +260,7 @@ def _kinds(target: Watched) -> list[str]:
 def _begin(context: bpy.types.Context, target: Watched) -> None:
     """Begins the first run whose request is another than before; accepts all where that was asked for."""
     kinds = _kinds(target)
+    jobs.state.live_ended = ""
     text = "" if kinds else MADE_NOTHING
     for kind in kinds:
         operator, call = _read(context, target, kind)
@@ -286,7 +294,7 @@ def _write(context: bpy.types.Context, target: Watched, operator: Any) -> None:
             bpy.ops.ed.undo_push(message=f"Auto Update {operator.bl_label}")
     finally:
         live.is_writing = False
-    live.written = jobs.state.written
+        jobs.state.written.discard(source.name)
     target.seen[operator.settings_name] = operator.content  # what was refused is not tried again before a change
     target.is_changed |= len(_kinds(target)) > 1  # others may read what this one wrote
     _drop_preview()
@@ -327,6 +335,7 @@ def wake() -> None:
 @persistent  # type: ignore[untyped-decorator]
 def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     """Notes which objects' inputs were changed. After each change in Blender, so that it has to be quick."""
+    live.has_news = True
     if live.is_writing or depsgraph.mode == "RENDER" or not (live.watched or jobs.state.live_asked):
         return
     changed = [update.id.original for update in depsgraph.updates]
@@ -346,7 +355,9 @@ def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
 @persistent  # type: ignore[untyped-decorator]
 def accept(*_: Any) -> None:
     """After Undo and Redo, and in a file that was opened, what was made is what belongs to it."""
-    _accept_all()
+    live.stop()
+    _accept(list(live.watched.values()))
+    live.has_news = True
     wake()
 
 

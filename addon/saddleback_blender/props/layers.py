@@ -35,6 +35,7 @@ def _show(layer: Any, _context: bpy.types.Context) -> None:
 def _ask(layer: Any, _context: bpy.types.Context) -> None:
     if layer.auto_update:
         jobs.state.live_asked.add(layer.id_data.name)
+    layer.id_data.update_tag()
 
 
 def _choose(props: Any, _context: bpy.types.Context) -> None:

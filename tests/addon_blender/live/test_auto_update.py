@@ -304,6 +304,15 @@ def test_another_layer_ends_the_run(item):
     assert live.live.operator is None and fingerprint() == before
 
 
+def test_a_layer_that_is_frozen_meanwhile_gets_nothing(item):
+    paint(item)
+    begin()
+    bpy.ops.saddleback.layer_freeze()
+    before = fingerprint()
+    steps()
+    assert live.live.operator is None and fingerprint() == before
+
+
 def test_a_script_s_run_is_taken_as_it_is(item, monkeypatch):
     paint(item)
     begin()
