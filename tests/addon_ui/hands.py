@@ -71,6 +71,8 @@ class Screen:
         clipboard = bpy.context.window_manager
         left, bottom = self.sidebar.x, self.sidebar.y
         x = left + self.sidebar.width // 2 - 20
+        self.move(self.view.x + 200, self.view.y + 300)
+        yield 12 * FRAME  # until Blender has left what the mouse was over before
         for y in range(bottom + self.sidebar.height - 8, bottom + 8, -9):
             self.move(x, y)
             yield FRAME
