@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_map>
 #include <vector>
 
 #include "mesh/tables/outgoing.h"
@@ -38,17 +39,51 @@ struct GoingOn {
   bool is_straight(double angle) const { return bent <= angle && turned < angle; }
 };
 
-GoingOn going_on(const Unfolding& unfolding, Index h) {
+/// The directions of the edges out of hubs, ascending: from each rim vertex of a fan an edge leads there.
+class Hubs {
+ public:
+  explicit Hubs(const Unfolding& unfolding) : unfolding_(unfolding) {
+    const Mesh& mesh = unfolding.mesh();
+    std::vector<Index> counts(mesh.vertex_count(), 0);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h)
+      if (++counts[mesh.from(h)] == k_many) directions_[mesh.from(h)] = {};
+    for (auto& [vertex, directions] : directions_) {
+      for (const Index out : outgoing(mesh, vertex)) directions.push_back(unfolding.polar(out));
+      std::ranges::sort(directions);
+    }
+  }
+  /// Calls use(direction) for edges out of a vertex: of a hub for those next to straight on from `back`.
+  template <class Use>
+  void for_each_ahead(Index vertex, double back, Use&& use) const {
+    const auto hub = directions_.empty() ? directions_.end() : directions_.find(vertex);
+    if (hub == directions_.end()) {
+      for (const Index out : outgoing(unfolding_.mesh(), vertex)) use(unfolding_.polar(out));
+      return;
+    }
+    for (const double ahead : {back - std::numbers::pi, back + std::numbers::pi}) {
+      const auto after = std::ranges::lower_bound(hub->second, ahead);
+      if (after != hub->second.end()) use(*after);
+      if (after != hub->second.begin()) use(*std::prev(after));
+    }
+  }
+
+ private:
+  static constexpr Index k_many = 64;
+  const Unfolding& unfolding_;
+  std::unordered_map<Index, std::vector<double>> directions_;
+};
+
+GoingOn going_on(const Unfolding& unfolding, const Hubs& hubs, Index h) {
   const Mesh& mesh = unfolding.mesh();
   const Index vertex = mesh.to(h);
   if (mesh.is_boundary(vertex)) return {};
   GoingOn best{std::abs(mesh.total_angle(vertex) - 2 * std::numbers::pi)};
   if (best.bent > k_nearly_straight) return best;
   const double back = unfolding.polar_of_reverse(h);
-  for (const Index out : outgoing(mesh, vertex)) {
-    const double turn = std::abs(unfolding.polar(out) - back);
+  hubs.for_each_ahead(vertex, back, [&](double direction) {
+    const double turn = std::abs(direction - back);
     best.turned = std::min(best.turned, std::abs(turn - std::numbers::pi));
-  }
+  });
   return best;
 }
 
@@ -87,24 +122,25 @@ bool is_beside_strip(const Unfolding& unfolding, Index vertex) {
       if (turn < 0) turn += mesh.total_angle(vertex);
       if (turn > std::numbers::pi - k_straight) {
         const bool is_straight = turn < std::numbers::pi + k_straight;
-        if (i > 2 && is_straight && farthest - nearest <= k_straight * farthest) return true;
+        if (i > 2 && is_straight) return true;
         break;
       }
       const double height = spoke.length * std::sin(turn);
       nearest = std::min(nearest, height);
       farthest = std::max(farthest, height);
+      if (farthest - nearest > k_straight * farthest) break;  // about the hub of a fan there are many others
     }
   }
   return false;
 }
 
-Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
+Surroundings surroundings_of(const Unfolding& unfolding, const Hubs& hubs, Index vertex) {
   const Mesh& mesh = unfolding.mesh();
   int edges = 0, straight = 0, nearly_straight = 0;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (const Index h : outgoing(mesh, vertex)) {
     ++edges;
-    const GoingOn on = going_on(unfolding, h);
+    const GoingOn on = going_on(unfolding, hubs, h);
     straight += on.is_straight(k_straight);
     nearly_straight += on.is_straight(k_nearly_straight);
     shortest = std::min(shortest, mesh.length(h));
@@ -120,10 +156,11 @@ Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
 Lattice lattice_of(const Unfolding& unfolding, int threads, const JobStage& stage) {
   const Index count = unfolding.mesh().vertex_count(), stride = std::max<Index>(1, count / k_most_sampled);
   const Index looked_at = (count + stride - 1) / stride;
+  const Hubs hubs(unfolding);
   std::atomic<Index> even = 0, stretched = 0, nearly_stretched = 0;
   parallel_for(looked_at, threads, 256, [&](Index i, int) {
     stage.check();
-    const auto [found, nearly] = surroundings_of(unfolding, i * stride);
+    const auto [found, nearly] = surroundings_of(unfolding, hubs, i * stride);
     if (found == Lattice::even && !nearly) ++even;
     if (found == Lattice::stretched && !nearly) ++stretched;
     if (found == Lattice::stretched) ++nearly_stretched;
