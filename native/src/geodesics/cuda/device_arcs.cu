@@ -196,7 +196,7 @@ class ArcFinder {
         scratch_(first_scratch(), stream),
         tables_(request, stream, choose_packing) {
     rows_.set_target_mask(packing().target_mask);
-    fails_.fill_bytes(0);
+    fails_.fill_bytes(request.is_callers ? 1 : 0);
     look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh(), request.node_count, fails_.data());
     check_cuda(cudaGetLastError(), "looking at edges");
   }

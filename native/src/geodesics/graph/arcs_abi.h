@@ -33,6 +33,9 @@ struct ArcsRequest {
   const std::int32_t *nodes = nullptr, *vertices = nullptr;   ///< of the vertices, and of the nodes
   double unit = 1;
   int sector_count = 0;  ///< of a full turn
+
+  bool is_callers =
+      false;  ///< whether the device leaves all nodes to the caller: there are strips that it does not know
 };
 
 /// Rows of arcs that the caller found.

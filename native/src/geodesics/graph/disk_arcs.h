@@ -20,7 +20,7 @@ class DiskRows {
         mesh_(tables.mesh),
         sectors_(tables.sectors),
         codec_(codec),
-        finder_(tables.mesh, search.kernel, rule) {}
+        finder_(tables.mesh, search.kernel, rule, &tables.strips) {}
 
   /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them.
   /// \throw Cancelled.

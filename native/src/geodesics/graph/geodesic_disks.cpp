@@ -62,8 +62,13 @@ double scale_about(double longest_edge) {
 
 double arc_slack(const DiskRule& rule) { return 1 + std::max(detour_of(rule), k_rounding); }
 
-GeodesicDisks::GeodesicDisks(const WindowMesh& mesh, const WaveKernel& kernel, const DiskRule& rule)
+GeodesicDisks::GeodesicDisks(const WindowMesh& mesh, const WaveKernel& kernel, const DiskRule& rule,
+                             const BorderStrips* strips)
     : mesh_(mesh), kernel_(kernel), rule_(rule) {
+  if (strips && !strips->empty() && !by_count()) {
+    strips_ = strips;
+    walk_.emplace(*strips, 1 + detour_of(rule));
+  }
   const std::size_t slots = static_cast<std::size_t>(mesh.node_count()) * k_batch;
   labels_.assign(slots + k_row_padding, k_unreached);
   arcs_.assign(slots, {k_unreached, 0});
@@ -92,7 +97,11 @@ void GeodesicDisks::add_node(int lane, Index node) {
     if (!mesh_.has_left(e)) add_link(apex_node * k_batch + lane, other, other, 1, ~e);
     if (mesh_.opposite(e) < 0) continue;
     const FirstWindow window{along, apex, mesh_.target(e), apex_node, mesh_.opposite(e), e};
-    along.dot(apex) < 0 ? add_wide_window(lane, window) : add_window(lane, window);
+    if (along.dot(apex) < 0) {
+      add_wide_window(lane, window);
+    } else {
+      add_window(lane, window);
+    }
   }
 }
 
@@ -114,6 +123,13 @@ void GeodesicDisks::add_point(int lane, const FaceSource& source, double limit) 
 /// is one; `root` as of sightings.
 void GeodesicDisks::add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge,
                              std::int32_t root) {
+  add_sighting(slot, place, from, edge, root);
+  lower_labels(sighting_count_ - 1, sighting_count_);
+}
+
+/// Its label is still to be lowered.
+void GeodesicDisks::add_sighting(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge,
+                                 std::int32_t root) {
   sightings_.reserve(sighting_count_ + 1);
   const SightingRows rows = sightings();
   const int i = sighting_count_++;
@@ -129,7 +145,6 @@ void GeodesicDisks::add_link(std::int32_t slot, const Vec2& place, const Vec2& f
   rows.label[i] = label_of(static_cast<float>(place.norm()), true);
   rows.edge[i] = edge;
   rows.root[i] = root;
-  lower_labels(i, i + 1);
 }
 
 /// Passes the faces whose far corners are on both rays, in double precision.
@@ -153,7 +168,8 @@ void GeodesicDisks::add_wide_window(int lane, FirstWindow window) {
   add_window(lane, window);
 }
 
-void GeodesicDisks::add_window(int lane, const FirstWindow& window) {
+/// Returns its row.
+int GeodesicDisks::add_window(int lane, const FirstWindow& window) {
   WindowColumns& columns = now_->lefts;
   columns.reserve(now_->left_count + 1);
   const WindowRows rows = columns.rows();
@@ -175,6 +191,7 @@ void GeodesicDisks::add_window(int lane, const FirstWindow& window) {
   rows.from[i] = window.left_node * k_batch + lane;
   rows.to[i] = window.right_node * k_batch + lane;
   rows.root[i] = window.root;
+  return i;
 }
 
 bool GeodesicDisks::run(const JobStage& stage) {
@@ -185,9 +202,98 @@ bool GeodesicDisks::run(const JobStage& stage) {
     advance();
   }
   if (by_count()) finish_disks();
+  if (walk_) lower_along_borders();
   choose();
   if (sources_ == Sources::points) list_served();
   return now_->size() == 0;
+}
+
+/// Lets windows that enter strips cross them. What comes out behind goes on with this generation.
+void GeodesicDisks::cross_strips() {
+  left_strips_.clear();
+  now_->left_count = take_into_strips(now_->lefts, now_->left_count);
+  now_->right_count = take_into_strips(now_->rights, now_->right_count);
+  for (const auto& [window, lane, root, most] : left_strips_) {
+    const Index edge = window.edge;
+    const int i =
+        add_window(lane, {window.ends[1], window.ends[0], mesh_.target(edge), mesh_.origin(edge), edge, root});
+    const WindowRows rows = now_->lefts.rows();
+    const double left_reach = window.flanks[0].norm(), right_reach = window.flanks[1].norm();
+    rows.left_x[i] = static_cast<float>(window.flanks[0].x() / left_reach);
+    rows.left_y[i] = static_cast<float>(window.flanks[0].y() / left_reach);
+    rows.right_x[i] = static_cast<float>(window.flanks[1].x() / right_reach);
+    rows.right_y[i] = static_cast<float>(window.flanks[1].y() / right_reach);
+    rows.left_reach[i] = static_cast<float>(left_reach);
+    rows.right_reach[i] = static_cast<float>(right_reach);
+    rows.left_way[i] = static_cast<float>(window.ways[0]);
+    rows.right_way[i] = static_cast<float>(window.ways[1]);
+    rows.most[i] = most;
+  }
+}
+
+/// Returns how many windows are left, which have to pass the next face singly.
+int GeodesicDisks::take_into_strips(WindowColumns& windows, int count) {
+  const WindowRows rows = windows.rows();
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const Index edge = rows.edge[i] / k_batch;
+    auto end = StripWalk::End::refused;
+    StripWindow window;
+    if (strips_->place(edge).strip >= 0) {
+      const auto flank = [](float reach, float x, float y) { return Vec2(double{reach} * x, double{reach} * y); };
+      window = {edge,
+                {Vec2(rows.from_x[i], rows.from_y[i]), Vec2(rows.to_x[i], rows.to_y[i])},
+                {flank(rows.left_reach[i], rows.left_x[i], rows.left_y[i]),
+                 flank(rows.right_reach[i], rows.right_x[i], rows.right_y[i])},
+                {rows.left_way[i], rows.right_way[i]}};
+      seen_.clear();
+      end = walk_->cross(window, seen_);
+    }
+    if (end == StripWalk::End::refused) {
+      windows.move(i, kept++);
+      continue;
+    }
+    const int lane = rows.edge[i] % k_batch;
+    for (const StripSighting& sighting : seen_) {
+      const std::int32_t slot = sighting.node * k_batch + lane;
+      add_sighting(slot, sighting.place, sighting.from, sighting.edge * k_batch + lane, rows.root[i]);
+      seen_on_borders_[lane].push_back({strips_->along_border(sighting.node), 0, slot});
+    }
+    if (end == StripWalk::End::behind) left_strips_.push_back({window, lane, rows.root[i], rows.most[i]});
+  }
+  return kept;
+}
+
+/// Lowers labels of what was seen in strips to ways along the border: where windows come from both sides, round a ring,
+/// arcs are not kept that are longer than those.
+void GeodesicDisks::lower_along_borders() {
+  for (int lane = 0; lane < k_batch; ++lane) {
+    std::vector<SeenOnBorder>& seen = seen_on_borders_[lane];
+    std::ranges::sort(seen, {}, &SeenOnBorder::along);
+    for (SeenOnBorder& there : seen) there.way = distance_of(labels_[there.slot]) / scales_[lane];
+    for (auto begin = seen.begin(); begin != seen.end();) {
+      const auto [from, to] = strips_->loop_at(begin->along);
+      const auto end = std::ranges::lower_bound(begin, seen.end(), to, {}, &SeenOnBorder::along);
+      const auto lower = [&, from, to](const auto& first, const auto& last) {
+        double way = std::numeric_limits<double>::infinity(), along = from;
+        for (const bool is_again : {false, true}) {  // round the loop
+          for (auto there = first; there != last; ++there) {
+            const double gap = std::abs(there->along - along);
+            way = there->way = std::min(there->way, way + gap);
+            along = there->along;
+          }
+          if (!is_again) along += first->along < along ? from - to : to - from;
+        }
+      };
+      lower(begin, end);
+      lower(std::reverse_iterator(end), std::reverse_iterator(begin));
+      begin = end;
+    }
+    for (const SeenOnBorder& there : seen) {
+      const auto way = static_cast<float>(there.way * scales_[lane]);
+      labels_[there.slot] = std::min(labels_[there.slot], label_of(way * k_longer, false));
+    }
+  }
 }
 
 /// Sights all windows of this generation, then splits them into the next.
@@ -199,6 +305,7 @@ void GeodesicDisks::advance() {
   constexpr float k_nothing_served = 1e10f;
   if (sources_ == Sources::points) scene.per_detour = k_nothing_served;
   const int before = sighting_count_;
+  if (walk_ && sources_ == Sources::nodes) cross_strips();
   sightings_.reserve(sighting_count_ + now_->size() + k_row_padding);
   apexes_.reserve(now_->size() + 2 * k_row_padding);
   // Rows of the right half begin behind the padding of the left one.
@@ -323,6 +430,7 @@ void GeodesicDisks::list_served() {
 
 void GeodesicDisks::clear() {
   changed_.clear();
+  for (auto& seen : seen_on_borders_) seen.clear();
   for (auto& slots : touched_) {
     for (const std::int32_t slot : slots) {
       labels_[slot] = k_unreached;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "geodesics/graph/lattice.h"
 #include "geodesics/graph/window_columns.h"
 #include "geodesics/graph/window_mesh.h"
+#include "geodesics/unfolding/strip_walk.h"
 
 namespace saddleback {
 
@@ -50,7 +52,9 @@ struct FaceSource {
 /// thread.
 class GeodesicDisks {
  public:
-  GeodesicDisks(const WindowMesh& mesh, const WaveKernel& kernel, const DiskRule& rule);
+  /// Windows of nodes by accuracy cross `strips` at once, if there are any.
+  GeodesicDisks(const WindowMesh& mesh, const WaveKernel& kernel, const DiskRule& rule,
+                const BorderStrips* strips = nullptr);
 
   /// Begins with new sources: nodes, or points of faces, whose sightings tell where the half-edges lie.
   enum class Sources { nodes, points };
@@ -104,7 +108,11 @@ class GeodesicDisks {
   void clear();
   void add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge, std::int32_t root);
   void add_wide_window(int lane, FirstWindow window);
-  void add_window(int lane, const FirstWindow& window);
+  void add_sighting(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge, std::int32_t root);
+  int add_window(int lane, const FirstWindow& window);
+  void cross_strips();
+  int take_into_strips(WindowColumns& windows, int count);
+  void lower_along_borders();
   void advance();
   void fetch_records(const std::int32_t* edges, int count) const;
   void lower_labels(int from, int to);
@@ -149,6 +157,22 @@ class GeodesicDisks {
   std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen
   std::array<std::size_t, k_batch> chosen_counts_{};
   std::array<std::vector<std::int32_t>, k_batch> served_;
+
+  const BorderStrips* strips_ = nullptr;  ///< null where windows pass all faces singly
+  std::optional<StripWalk> walk_;
+  std::vector<StripSighting> seen_;  ///< in a strip
+  struct LeftStrip {
+    StripWindow window;
+    int lane;
+    std::int32_t root;
+    float most;
+  };
+  std::vector<LeftStrip> left_strips_;
+  struct SeenOnBorder {
+    double along, way;
+    std::int32_t slot;
+  };
+  std::array<std::vector<SeenOnBorder>, k_batch> seen_on_borders_;
 };
 
 }  // namespace saddleback

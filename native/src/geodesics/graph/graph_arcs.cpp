@@ -120,7 +120,8 @@ WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes,
 WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
                        std::span<const Index> vertices, int threads, const JobStage& stage)
     : mesh(unfolding, edges, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
-      sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage.part(k_with_mesh, 1)) {}
+      sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage.part(k_with_mesh, 1)),
+      strips(unfolding, {edges.edge_of.data(), edges.edge_of.size()}, nodes, mesh.unit()) {}
 
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
                                 const DiskRule& rule, const JobStage& stage) {

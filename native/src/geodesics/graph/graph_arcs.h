@@ -14,6 +14,7 @@ namespace saddleback {
 struct WaveTables {
   WindowMesh mesh;
   WaveSectors sectors;
+  BorderStrips strips;
   /// \throw InputError for more triangles than slots can be numbered for; Cancelled.
   WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
              const JobStage& stage);

@@ -144,6 +144,7 @@ ArcRows cuda_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choo
   request.vertices = search.vertices.data();
   request.unit = mesh.mean_edge_length();
   request.sector_count = ArcCodec::k_sectors;
+  request.is_callers = rule.k == 0 && !border_rows(mesh).empty();
 
   Caller caller(search, choose_codec, rule, std::move(room), stage);
   CudaReason reason;

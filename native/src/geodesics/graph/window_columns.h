@@ -24,6 +24,16 @@ class WindowBatchColumns {
     grow(ints_);
   }
 
+  /// Copies a row over another.
+  void move(int from, int to) {
+    const auto copy = [&](auto& columns) {
+      for (auto& column : columns) column[static_cast<std::size_t>(to)] = column[static_cast<std::size_t>(from)];
+    };
+    copy(reals_);
+    copy(floats_);
+    copy(ints_);
+  }
+
  protected:
   double* real(int column) { return reals_[column].data(); }
   float* single(int column) { return floats_[column].data(); }

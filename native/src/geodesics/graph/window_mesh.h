@@ -1,6 +1,7 @@
 #pragma once
 // A mesh as waves of windows want it: a record a half-edge, in the order of the graph's nodes.
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,10 @@ class WindowMesh {
   const EdgeRecord* records() const { return records_.data(); }
   double unit() const { return unit_; }
 
+  /// Returns the node that the edge comes from. O(log n).
+  Index origin(Index edge) const {
+    return static_cast<Index>(std::upper_bound(first_.begin(), first_.end(), edge) - first_.begin()) - 1;
+  }
   Index target(Index edge) const { return targets_[edge]; }   ///< node that the edge leads to
   double length(Index edge) const { return lengths_[edge]; }  ///< in units
   bool is_saddle(Index node) const { return saddles_[node] != 0; }

@@ -37,7 +37,7 @@ struct CudaReason {
 
 /// Functions that never throw and keep nothing of what they are given, but for graphs until they are dropped.
 struct CudaModule {
-  static constexpr int k_version = 9;  ///< of this table and of all that it passes
+  static constexpr int k_version = 10;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/graph/arcs_abi.h.
   CudaStatus (*find_arcs)(const ArcsRequest&, const ArcsCaller&, DeviceTimes&, CudaReason&) = nullptr;
