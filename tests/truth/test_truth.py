@@ -41,6 +41,14 @@ def test_random_input_meets_the_truths():
         ("cell_parts.boundaries_among_needles", 795778662590),
         ("relaxation.least_sums_of_squares", 72000214),  # to and fro across a valley, between ways that bend
         ("relaxation.least_sums_of_squares", 72000855),  # held by the border, a hundred times
+        ("relaxation.least_sums_of_squares", 74000016),  # the least is at a saddle that ways bend at
+        ("relaxation.least_sums_of_squares", 74000560),
+        ("relaxation.least_sums_of_squares", 72000863),
+        ("relaxation.least_sums_of_squares", 72001955),
+        ("relaxation.least_sums_of_squares", 74002574),  # the least is farther along the border
+        ("relaxation.least_sums_of_squares", 91003354),  # begun at a saddle, whose mean told no way down
+        ("relaxation.least_sums_of_squares", 91004980),
+        ("relaxation.least_sums_of_squares", 91001186),  # at a vertex where the border is more than half a turn
         ("outlines.safe_distances", 20301927),  # needles side by side, told apart by the tables' angles
         ("outlines.safe_distances", 892871),  # a strip before the other's first
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -24,6 +25,8 @@ constexpr double k_least_gain = 0.1;
 constexpr double k_rounding = 1e-12;
 // Positive curvature makes steps fall short by less than a half where a center is unique; far fewer are made.
 constexpr int k_most_steps = 100;
+// So many steps from a place in vain are few elsewhere.
+constexpr int k_vain_before_vertices = 4;
 
 std::vector<double> checked_weights(std::span<const double> weights, std::size_t count) {
   if (weights.empty()) return std::vector<double>(count, 1.0);
@@ -95,6 +98,31 @@ class Gathering {
     }
     energy_ /= mass;
     return sum / mass;
+  }
+  /// Where the sum falls fastest from a vertex, in its tangent plane, and as far as it leads; 0 where it rises all
+  /// around. Round a saddle a way that bends there grows alike in every direction that is behind it: no mean tells
+  /// that. O(points).
+  Vec2 steepest_at(const SurfacePoint& vertex, const JobStage& stage) {
+    constexpr int k_directions = 360;
+    PlaceDistances seen;
+    const LogMap map = log_of_corners(vertex, seen, stage);
+    const double scale = angle_scale(mesh_, vertex), total = mesh_.total_angle(vertex_at(mesh_, vertex));
+    const bool is_closed = !mesh_.is_boundary(vertex_at(mesh_, vertex));
+    const double turn = total / (is_closed ? k_directions : k_directions - 1);  // both borders are directions, too
+    std::vector<double> rates(k_directions, 0.0);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vec2 log = log_of(map, seen, vertex, i);
+      const double angle = surface_angle(mesh_, vertex, std::atan2(log.y(), log.x()));
+      for (int k = 0; k < k_directions; ++k) {
+        double between = std::abs(turn * k - angle);
+        if (is_closed) between = std::abs(std::remainder(between, total));
+        rates[k] += weights_[i] * log.norm() * std::cos(std::min(between, std::numbers::pi));
+      }
+    }
+    const auto best = std::ranges::max_element(rates);
+    const double heading = turn / scale * static_cast<double>(best - rates.begin());
+    const double mass = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    return std::max(0.0, *best) / mass * Vec2(std::cos(heading), std::sin(heading));
   }
   /// Return, for the place of the last step, the distance of the farthest point, and the mean that is to be least:
   /// its gradient is the step twice, back.
@@ -170,6 +198,81 @@ Vec2 shorter_step(const Vec2& mean, double share, const Vec2& beyond) {
   return on / (on + back) * (share * mean + std::sqrt(share) * across);
 }
 
+/// The part of a vector that leads along the border, for a place on an edge of it; the vector itself anywhere else.
+Vec2 along_border(const Mesh& mesh, const SurfacePoint& place, const Vec2& vector) {
+  if (vertex_at(mesh, place) != k_none) return vector;
+  const FaceChart chart(mesh, place.face);
+  for (int i = 0; i < 3; ++i) {
+    const int from = (i + 1) % 3, to = (i + 2) % 3;
+    if (place.barycentric[i] != 0 || mesh.twin(3 * place.face + from) != k_none) continue;
+    const Vec2 edge = chart.corner[to] - chart.corner[from];
+    const double heading = tangent_heading(mesh, place, std::atan2(edge.y(), edge.x()));
+    const Vec2 way(std::cos(heading), std::sin(heading));
+    return way.dot(vector) * way;
+  }
+  return vector;
+}
+
+/// Goes from place to place where the sum is less.
+class Descent {
+ public:
+  Descent(Gathering& gathering, const Mesh& mesh, const JobStage& stage) : gathering_(gathering), mesh_(mesh) {
+    const SurfacePoint start = gathering.start();
+    arrive(start, gathering.step_at(start, stage));
+  }
+
+  const SurfacePoint& center() const { return center_; }
+  bool is_there() const { return !(step_.norm() > k_tolerance * gathering_.spread()); }
+
+  void go_on(const JobStage& stage) {
+    const Moved moved = move_sites(mesh_, {center_}, {step_}, 1);
+    const Vec2 next_mean = gathering_.step_at(moved.sites.front(), stage);
+    const bool is_held = !(moved.steps.front().norm() > k_tolerance * gathering_.spread());  // by the border
+    const double least = energy_ * (1 + k_rounding) - k_least_gain * 2 * mean_.dot(step_);
+    if (!is_held && gathering_.energy() <= least) return arrive(moved.sites.front(), next_mean);
+    const Vec2 slide = is_held ? along_border(mesh_, center_, mean_) : mean_;
+    if ((mean_ - slide).norm() > k_tolerance * mean_.norm()) return set_out(slide);
+    // Round saddles the mean bends more than in a plane.
+    step_ = is_along_ ? shorter_step(mean_, share_, carried_back(next_mean, moved)) : Vec2((share_ /= 2) * mean_);
+    is_along_ = !is_along_;
+    if (++vain_ != k_vain_before_vertices) return;
+    if (vertex_at(mesh_, center_) != k_none)
+      set_out(gathering_.steepest_at(center_, stage));
+    else
+      try_corners(stage);
+  }
+
+ private:
+  /// At the place that has just been looked at.
+  void arrive(const SurfacePoint& place, const Vec2& mean) {
+    center_ = place;
+    energy_ = gathering_.energy();
+    vain_ = 0;
+    set_out(mean);
+  }
+  void set_out(const Vec2& mean) {
+    step_ = mean_ = mean;
+    share_ = 1;
+    is_along_ = true;
+  }
+  /// At a saddle that ways bend at the sum has a sharp least, which no step meets.
+  void try_corners(const JobStage& stage) {
+    for (int i = 0; i < 3; ++i) {
+      const SurfacePoint corner{center_.face, Vec3::Unit(i)};
+      const Vec2 mean = gathering_.step_at(corner, stage);
+      if (gathering_.energy() < energy_ * (1 - k_rounding)) arrive(corner, mean);
+    }
+  }
+
+  Gathering& gathering_;
+  const Mesh& mesh_;
+  SurfacePoint center_;
+  Vec2 mean_, step_;  ///< from the center; the step may be shorter and turned
+  double energy_ = 0, share_ = 1;
+  bool is_along_ = true;
+  int vain_ = 0;  ///< steps from the center
+};
+
 }  // namespace
 
 SurfacePoint geodesic_center(const SaddleVertexGraph& graph, const SurfacePoints& points,
@@ -178,30 +281,14 @@ SurfacePoint geodesic_center(const SaddleVertexGraph& graph, const SurfacePoints
   check_points(mesh, points);
   Gathering gathering(graph, points, checked_weights(weights, points.size()));
   const JobStage stage(job, "Finding a center");
-  SurfacePoint center = gathering.start();
-  Vec2 mean = gathering.step_at(center, stage.part(0, 0)), step = mean;
-  double energy = gathering.energy(), share = 1;
-  bool is_along = true;
-  for (int i = 0; i < k_most_steps && step.norm() > k_tolerance * gathering.spread(); ++i) {
+  Descent descent(gathering, mesh, stage.part(0, 0));
+  for (int i = 0; i < k_most_steps && !descent.is_there(); ++i) {
     const double done = 1 - 1.0 / (i + 1);
     stage.update(done);
-    const Moved moved = move_sites(mesh, {center}, {step}, 1);
-    const Vec2 next_mean = gathering.step_at(moved.sites.front(), stage.part(done, done));
-    const bool is_held = !(moved.steps.front().norm() > k_tolerance * gathering.spread());  // by the border
-    const double least = energy * (1 + k_rounding) - k_least_gain * 2 * mean.dot(step);
-    if (is_held || gathering.energy() > least) {  // round saddles the mean bends more than in a plane
-      step = is_along ? shorter_step(mean, share, carried_back(next_mean, moved)) : Vec2((share /= 2) * mean);
-      is_along = !is_along;
-      continue;
-    }
-    center = moved.sites.front();
-    step = mean = next_mean;
-    energy = gathering.energy();
-    share = 1;
-    is_along = true;
+    descent.go_on(stage.part(done, done));
   }
   stage.update(1);
-  return center;
+  return descent.center();
 }
 
 }  // namespace saddleback

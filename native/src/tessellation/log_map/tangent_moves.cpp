@@ -26,10 +26,9 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
   moved.sites[i] = site;
   const double length = step.norm();
   if (!(length > 0) || !std::isfinite(length)) return;
-  const double heading = std::atan2(step.y(), step.x()), scale = surface_scale(mesh, site);
-  const double angle = scale == 1 ? heading : (heading < 0 ? heading + 2 * std::numbers::pi : heading) * scale;
+  const double heading = std::atan2(step.y(), step.x());
   try {
-    const TraceEnd end = trace_end(mesh, site, angle, length);
+    const TraceEnd end = trace_end(mesh, site, surface_angle(mesh, site, heading), length);
     moved.sites[i] = end.point;
     const double angle_turned = tangent_heading(mesh, end.point, end.angle) - heading;
     moved.turns[i] = Vec2(std::cos(angle_turned), std::sin(angle_turned));
@@ -43,6 +42,14 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
 
 double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle) {
   return angle_about(mesh, point, chart_angle) / surface_scale(mesh, point);
+}
+
+double surface_angle(const Mesh& mesh, const SurfacePoint& point, double heading) {
+  const Index vertex = vertex_at(mesh, point);
+  const double scale = surface_scale(mesh, point), around = 2 * std::numbers::pi;
+  if (vertex != k_none && mesh.is_boundary(vertex))
+    return heading < (mesh.total_angle(vertex) - around) / 2 ? heading + around : heading;
+  return scale == 1 ? heading : (heading < 0 ? heading + around : heading) * scale;
 }
 
 Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads,

@@ -28,6 +28,10 @@ Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentFiel
 /// A direction given in the chart of the point's face as an angle of the point's tangent plane.
 double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle);
 
+/// The other way round: a direction of the tangent plane as an angle about the point. At a vertex it counts from the
+/// first half-edge, on the border so that what is no direction of the surface lies as far before as behind its fan.
+double surface_angle(const Mesh& mesh, const SurfacePoint& point, double heading);
+
 /// The field carried along.
 void transport(const Moved& moved, TangentField& field);
 
