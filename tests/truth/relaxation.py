@@ -138,7 +138,7 @@ def middles(mesh: sb.Mesh, rng: Random) -> None:
         assert sums[0][0] <= 3 * sums[1].min() + 1e-9 * size**2, f"{sums[0][0]}, but {sums[1].min()} at a point"
 
 
-@guards("geodesic_center", unsettled="3 of 3000: a hundred steps end beside the least, where ways bend at saddles")
+@guards("geodesic_center")
 def least_sums_of_squares(mesh: sb.Mesh, rng: Random) -> None:
     """No point beside the center has a lesser sum of exact squared distances."""
     size = longest_edge(mesh)
