@@ -206,6 +206,7 @@ bool WavefrontDistances::is_too_far(const RayWindow& window, double key) const {
 
 void WavefrontDistances::run(const RayLimits& limits, const JobStage& stage, const ReportRays& report) {
   limits_ = limits;
+  is_cut_ = !places_.empty() && !barriers_.empty();
   do {
     while (queue_.advance() && queue_.reached() <= limits_.radius) {
       if (report) report(queue_.reached(), static_cast<Index>(reached_.size()));
@@ -254,8 +255,7 @@ void WavefrontDistances::drain(BlockQueue<RayWindow>::Block* block, const JobSta
         if (distances_[vertex] == window.offset) due_.push_back(vertex);
         continue;
       }
-      if (!places_.empty())  // also those before a barrier
-        window.rays == Rays::perpendicular ? reach_places<Parallel>(window) : reach_places<Radial>(window);
+      if (is_cut_) reach_before_barriers(window);
       barriers_.for_each_free_part(window, RayBarriers::Side::entered, [this](const RayWindow& part) {
         part.rays == Rays::perpendicular ? propagate<Parallel>(part) : propagate<Radial>(part);
       });
@@ -325,13 +325,9 @@ bool WavefrontDistances::circles_tip(const RayWindow& w) const {
          (w.b0 == 0 && circles(tip_tangents_[mesh_.from(w.halfedge)], -to_start.x(), to_start.y()));
 }
 
-/// Tells whether an end of the edge offers all of the window a shorter way.
-template <class Front>
-bool WavefrontDistances::is_beaten(const RayWindow& window) const {
-  const Index h = window.halfedge;
-  const double at_from = distances_[mesh_.from(h)] * k_slack, at_to = distances_[mesh_.to(h)] * k_slack;
-  return Front::is_less(at_from + window.b1, window, window.b1) ||
-         Front::is_less(at_to + (mesh_.length(h) - window.b0), window, window.b0);
+/// Barriers take rays that meet them in the face out of a window; places before them see those rays all the same.
+void WavefrontDistances::reach_before_barriers(const RayWindow& window) {
+  window.rays == Rays::perpendicular ? reach_places<Parallel>(window) : reach_places<Radial>(window);
 }
 
 template <class Front>
@@ -339,11 +335,14 @@ void WavefrontDistances::propagate(const RayWindow& window) {
   const Index h = window.halfedge;
   const double base = mesh_.length(h);
   const Vec2& apex = unfolding_.apex(h);
-  if (is_beaten<Front>(window)) return;
   const double at_from = distances_[mesh_.from(h)] * k_slack, at_to = distances_[mesh_.to(h)] * k_slack;
+  if (Front::is_less(at_from + window.b1, window, window.b1) ||
+      Front::is_less(at_to + (base - window.b0), window, window.b0))
+    return;
   if (!tip_tangents_.empty() && circles_tip<Front>(window)) return;
   const Vec2 ray = Front::ray(window, apex);
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
+  if (!places_.empty() && !is_cut_) reach_places<Front>(window);
   const double reach = Front::distance(window, ray, apex);
   // Where the ray to the apex crosses the half-edge.
   const double split = apex.x() - ray.x() * (apex.y() / ray.y());
@@ -392,7 +391,6 @@ void WavefrontDistances::reach_apex(const RayWindow& window, const Vec2& ray, do
 /// Reaches, of the places in the face that the window enters those that its rays meet.
 template <class Front>
 void WavefrontDistances::reach_places(const RayWindow& window) {
-  if (is_beaten<Front>(window)) return;
   const Index h = window.halfedge;
   const double base = mesh_.length(h), begin = window.b0 - k_at_border * base, end = window.b1 + k_at_border * base;
   const Vec2 apex = unfolding_.apex(h);

@@ -96,8 +96,7 @@ class WavefrontDistances {
   void emit_from(Index vertex, double begin, double end);
   template <class Front>
   bool circles_tip(const RayWindow& window) const;
-  template <class Front>
-  bool is_beaten(const RayWindow& window) const;
+  void reach_before_barriers(const RayWindow& window);
   template <class Front>
   void propagate(const RayWindow& window);
   template <class Front>
@@ -122,6 +121,7 @@ class WavefrontDistances {
   std::vector<Index> reached_, settled_;
   PlaceDistances places_;
   RayLimits limits_;
+  bool is_cut_ = false;  ///< there are places, and barriers
   std::uint32_t epoch_ = 0;
 };
 
