@@ -33,7 +33,7 @@ from PIL import Image
 STEP_SIZE, MOTION_SIZE = (420, 280), (320, 214)
 STEP_SAMPLES, MOTION_SAMPLES = 4, 3
 BACKDROP = (0.11, 0.12, 0.14, 1.0)
-COLORS, FRAME_TIME = 64, 110  # of the animations; milliseconds
+COLORS, FRAME_TIME = 112, 110  # of the animations; milliseconds
 Action = Callable[[bpy.types.Object], None]
 
 
@@ -239,7 +239,7 @@ def animate(frames: list[Path], target: Path) -> None:
     strip = Image.new("RGB", (pictures[0].width, sum(picture.height for picture in pictures)))
     for i, picture in enumerate(pictures):
         strip.paste(picture, (0, i * picture.height))
-    palette = strip.quantize(COLORS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)  # rare colors, too
+    palette = strip.quantize(COLORS, kmeans=3, dither=Image.Dither.NONE)  # the means keep rare colors
     flat = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     flat[0].save(target, save_all=True, append_images=flat[1:], duration=FRAME_TIME, loop=0, optimize=True)
     print(f"-- {target.relative_to(ROOT)}: {target.stat().st_size / 1000:.0f} KB", flush=True)
