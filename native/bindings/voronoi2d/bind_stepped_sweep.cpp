@@ -15,13 +15,15 @@ SteppedSweep make(const py::object& sites, const py::object& center, const py::o
   const std::vector<Vec2> points = as_points_2d(sites, "sites");
   const std::vector<double> radii = as_weights(weights, points.size());
   const ArrayIn<double> middle = as_reals(center, "center", 2);
-  return without_gil([&] { return SteppedSweep(points, {middle.values[0], middle.values[1]}, radii); });
+  const JobIn token(py::none{});
+  return without_gil([&] { return SteppedSweep(points, {middle.values[0], middle.values[1]}, radii, token); });
 }
 
 SweepCircles make_circles(const py::object& sites, const py::object& centers, const py::object& weights) {
   const std::vector<Vec2> points = as_points_2d(sites, "sites"), middles = as_points_2d(centers, "centers");
   const std::vector<double> radii = as_weights(weights, points.size());
-  return without_gil([&] { return SweepCircles(points, middles, radii); });
+  const JobIn token(py::none{});
+  return without_gil([&] { return SweepCircles(points, middles, radii, token); });
 }
 
 Index as_circle(const SweepCircles& sweep, const py::object& circle) {
@@ -132,12 +134,13 @@ void bind_stepped_sweep(py::module_& m) {
       .def(
           "step",
           [](SteppedSweep& s) -> py::object {
-            std::optional<Event> event = s.step();
+            std::optional<Event> event = s.is_begun() ? s.step() : s.step(JobIn(py::none()));
             return event ? py::cast(std::move(*event)) : py::none();
           },
           "Go on to the next event and return it; None after the last.")
       .def(
-          "grow", [](SteppedSweep& s, const py::object& radius) { s.grow(as_real(radius, "radius")); },
+          "grow",
+          [](SteppedSweep& s, const py::object& radius) { s.grow(as_real(radius, "radius"), JobIn(py::none())); },
           py::arg("radius"), "Grow to a radius, through all events on the way; a smaller radius changes nothing.")
       .def_property_readonly("radius", &SteppedSweep::radius, "Radius of the circle.")
       .def_property_readonly(

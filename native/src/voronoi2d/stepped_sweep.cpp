@@ -31,8 +31,8 @@ struct ToldSweep {
   Voronoi2d diagram;
   DiagramSweep sweep;
   std::size_t next = 0;  ///< event
-  ToldSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights)
-      : diagram(weighted_diagram(sites, weights)), sweep(diagram, center) {}
+  ToldSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights, Job* job)
+      : diagram(weighted_diagram(sites, weights, job)), sweep(diagram, center, JobStage(job, "Sweeping")) {}
 };
 
 /// What a sweep has come to.
@@ -80,8 +80,9 @@ struct SteppedSweep::State : Progress {
   bool is_started() const { return touched >= std::max<Index>(1, nearest < 3 ? 1 : nearest); }
   double next_touch() const { return touched < static_cast<Index>(x.size()) ? radii[touched] : k_never; }
   Index touch_next();
-  void run(double up_to);
-  void check(double wanted);
+  void reach(double event_radius);
+  void run(double up_to, const JobStage& stage);
+  void check(double wanted, Job* job);
   void note(Index arc);
   double vanish_next(double up_to);
   Vec2 site(Index k) const { return {x[k] - sweep.center_x, y[k] - sweep.center_y}; }
@@ -175,27 +176,49 @@ Index SteppedSweep::State::touch_next() {
   return site;
 }
 
+/// The circle has grown to an event; the last ones come at no radius of their own.
+void SteppedSweep::State::reach(double event_radius) {
+  if (event_radius < k_latest) radius = std::max(radius, event_radius / ordered.scale);
+}
+
 /// Goes through all events up to a radius.
-void SteppedSweep::State::run(double up_to) {
+void SteppedSweep::State::run(double up_to, const JobStage& stage) {
   while (true) {
-    while (is_started() && vanish_next(std::min(up_to, next_touch())) != k_never) {}
-    if (next_touch() > up_to) return;
-    touch_next();
+    stage.check();
+    const double vanished = is_started() ? vanish_next(std::min(up_to, next_touch())) : k_never;
+    if (vanished != k_never) {
+      reach(vanished);
+    } else if (next_touch() <= up_to) {
+      reach(next_touch());
+      touch_next();
+    } else {
+      return;
+    }
   }
 }
 
 /// Before the first event is told the sweep is run to its end, and then taken back to `wanted`. Where rounding leads it
 /// astray, events are told from the diagram.
-void SteppedSweep::State::check(double wanted) {
+void SteppedSweep::State::check(double wanted, Job* job) {
+  const double before = radius;
   start_sweep();
-  run(wanted);
-  Progress then = *this;
-  run(k_latest);
-  if (is_triangulation()) {
-    static_cast<Progress&>(*this) = std::move(then);
-    attach();
-  } else {
-    told = std::make_unique<ToldSweep>(given, center, std::span<const double>{});
+  try {
+    const JobStage stage(job, "Sweeping");
+    run(wanted, stage);
+    Progress then = *this;
+    const double reached = radius;
+    run(k_latest, stage);
+    radius = reached;
+    if (is_triangulation()) {
+      static_cast<Progress&>(*this) = std::move(then);
+      attach();
+    } else {
+      told = std::make_unique<ToldSweep>(given, center, std::span<const double>{}, job);
+    }
+  } catch (...) {
+    radius = before;
+    start_sweep();
+    throw;
   }
   is_checked = true;
 }
@@ -221,14 +244,14 @@ double SteppedSweep::State::vanish_next(double up_to) {
   return k_never;
 }
 
-SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights)
+SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights, Job* job)
     : state_(std::make_unique<State>()) {
   if (!center.allFinite())
     throw InputError(message("center: wanted finite numbers, got (", center.x(), ", ", center.y(), ")"));
   State& s = *state_;
   s.center = center;
   if (!weights.empty()) {
-    s.told = std::make_unique<ToldSweep>(sites, center, weights);
+    s.told = std::make_unique<ToldSweep>(sites, center, weights, job);
     const auto& events = s.told->sweep.events();
     if (!events.empty()) s.radius = std::min(0.0, events[0].radius);
     return;
@@ -248,9 +271,11 @@ SteppedSweep& SteppedSweep::operator=(SteppedSweep&&) noexcept = default;
 double SteppedSweep::radius() const { return state_->radius; }
 const Vec2& SteppedSweep::center() const { return state_->center; }
 
-std::optional<SteppedSweep::Event> SteppedSweep::step() {
+bool SteppedSweep::is_begun() const { return state_->told || state_->is_checked; }
+
+std::optional<SteppedSweep::Event> SteppedSweep::step(Job* job) {
   State& s = *state_;
-  if (!s.told && !s.is_checked) s.check(-1);
+  if (!is_begun()) s.check(-1, job);
   if (s.told) {
     const auto& events = s.told->sweep.events();
     if (s.told->next == events.size()) return std::nullopt;
@@ -263,22 +288,22 @@ std::optional<SteppedSweep::Event> SteppedSweep::step() {
   if (s.is_started()) {
     const double radius = s.vanish_next(std::min(s.next_touch(), k_latest));
     if (radius != k_never) {
-      if (radius < k_latest) s.radius = std::max(s.radius, radius / s.ordered.scale);
+      s.reach(radius);
       return s.vanished(s.sweep.triangle_count - 1);
     }
   }
   if (s.next_touch() == k_never) return std::nullopt;
-  s.radius = std::max(s.radius, s.next_touch() / s.ordered.scale);
+  s.reach(s.next_touch());
   const Index site = s.touch_next();
   return Event{true, s.radius, {s.original[site]}, s.outside(s.site(site))};
 }
 
-void SteppedSweep::grow(double radius) {
+void SteppedSweep::grow(double radius, Job* job) {
   if (!std::isfinite(radius) || radius < 0)
     throw InputError(message("radius: wanted a finite number, 0 or more, got ", radius));
   State& s = *state_;
   const double scaled = std::min(radius * s.ordered.scale, k_latest);
-  if (!s.told && !s.is_checked) s.check(scaled);
+  if (!is_begun()) s.check(scaled, job);
   if (s.told) {
     const auto& events = s.told->sweep.events();
     std::size_t& next = s.told->next;
@@ -286,7 +311,7 @@ void SteppedSweep::grow(double radius) {
     s.radius = std::max(s.radius, radius);
     return;
   }
-  s.run(scaled);
+  s.run(scaled, JobStage(job, "Sweeping"));
   if (radius >= s.radius) s.untold = 0;
   s.radius = std::max(s.radius, radius);
 }

@@ -28,15 +28,16 @@ struct SweepCircles::State {
   std::vector<Circle> circles;
   double radius = 0;
 
-  void add_circles();
+  void add_circles(const JobStage& stage);
   Index soonest() const;
   double radius_of(const Circle& circle) const { return std::min(radius, circle.stop); }
 };
 
-void SweepCircles::State::add_circles() {
+void SweepCircles::State::add_circles(const JobStage& stage) {
   for (const Vec2& center : centers)
-    circles.push_back({DiagramSweep(diagram, center), -std::numeric_limits<double>::infinity()});
+    circles.push_back({DiagramSweep(diagram, center, stage), -std::numeric_limits<double>::infinity()});
   for (const Index site : diagram.cell_sites) {
+    stage.check();
     const auto distance = [&](const Vec2& center) { return (center - diagram.sites[site]).squaredNorm(); };
     const auto nearest = std::min_element(centers.begin(), centers.end(),
                                           [&](const Vec2& a, const Vec2& b) { return distance(a) < distance(b); });
@@ -56,16 +57,17 @@ Index SweepCircles::State::soonest() const {
   return best;
 }
 
-SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights)
+SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights,
+                           Job* job)
     : state_(std::make_unique<State>()) {
   if (centers.empty()) throw InputError("centers: wanted one or more, got none");
   for (std::size_t k = 0; k < centers.size(); ++k)
     if (!centers[k].allFinite())
       throw InputError(
           message("centers: center ", k, " is (", centers[k].x(), ", ", centers[k].y(), "), wanted finite numbers"));
-  state_->diagram = voronoi2d::weighted_diagram(sites, weights);
+  state_->diagram = voronoi2d::weighted_diagram(sites, weights, job);
   state_->centers.assign(centers.begin(), centers.end());
-  state_->add_circles();
+  state_->add_circles(JobStage(job, "Sweeping circles"));
 }
 
 SweepCircles::~SweepCircles() = default;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback::voronoi2d {
@@ -36,16 +37,21 @@ class SteppedSweep {
     bool is_finished;  ///< else it still grows, at its end or at both
   };
 
-  /// Takes the sites, with weights one for each site, or none. \throw InputError as voronoi_2d does. O(n log n).
-  SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights = {});
+  /// Takes the sites, with weights one for each site, or none. \throw InputError as voronoi_2d does, Cancelled.
+  /// O(n log n).
+  SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights = {},
+               Job* job = nullptr);
   ~SteppedSweep();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
   SteppedSweep(SteppedSweep&&) noexcept;
   SteppedSweep& operator=(SteppedSweep&&) noexcept;
 
-  /// Goes on to the next event; none after the last. O(1) expected, the first O(n log n).
-  std::optional<Event> step();
-  /// Grows the circle to a radius, through all events on the way; a smaller radius changes nothing.
-  void grow(double radius);
+  /// Goes on to the next event; none after the last. \throw Cancelled. O(1) expected, the first O(n log n).
+  std::optional<Event> step(Job* job = nullptr);
+  /// Tells whether the next step or growth is not the first, so that a step takes no time worth watching.
+  bool is_begun() const;
+  /// Grows the circle to a radius, through all events on the way; a smaller radius changes nothing. Cancelled on the
+  /// way it stays where it has come to. \throw InputError for a radius that is negative or not finite. Cancelled.
+  void grow(double radius, Job* job = nullptr);
 
   double radius() const;
   const Vec2& center() const;
@@ -74,8 +80,10 @@ class SweepCircles {
     SteppedSweep::Event event;
   };
 
-  /// \throw InputError as voronoi_2d does, and for no center or one that is not finite. O(n log n) for each center.
-  SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights = {});
+  /// \throw InputError as voronoi_2d does, and for no center or one that is not finite. Cancelled. O(n log n) for each
+  /// center.
+  SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights = {},
+               Job* job = nullptr);
   ~SweepCircles();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
   SweepCircles(SweepCircles&&) noexcept;
   SweepCircles& operator=(SweepCircles&&) noexcept;

@@ -19,31 +19,33 @@ double weight_of(const Voronoi2d& diagram, Index site) { return diagram.weights.
 
 }  // namespace
 
-Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> weights) {
-  Voronoi2d diagram = weights.empty() ? voronoi_2d(sites) : voronoi_2d(sites, weights);
+Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> weights, Job* job) {
+  Voronoi2d diagram = weights.empty() ? voronoi_2d(sites, {}, job) : voronoi_2d(sites, weights, {}, job);
   diagram.weights.assign(weights.begin(), weights.end());
   return diagram;
 }
 
-DiagramSweep::DiagramSweep(const Voronoi2d& diagram, const Vec2& center)
+DiagramSweep::DiagramSweep(const Voronoi2d& diagram, const Vec2& center, const JobStage& stage)
     : diagram_(diagram), center_(center), touches_(diagram.sites.size(), k_infinity), lasts_(diagram.sites.size(), 0) {
   for (const Index site : diagram.cell_sites) {
     touches_[site] = (diagram.sites[site] - center).norm() - weight_of(diagram, site);
     lasts_[site] = diagram.is_bounded(site) ? touches_[site] : k_infinity;
     events_.push_back({true, touches_[site], {site}, diagram.sites[site]});
   }
-  add_vertices();
-  std::sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) {
+  add_vertices(stage);
+  std::sort(events_.begin(), events_.end(), [&](const Event& a, const Event& b) {
+    stage.check();
     if (a.radius != b.radius) return a.radius < b.radius;
     return a.is_touch != b.is_touch ? a.is_touch : a.sites < b.sites;
   });
 }
 
-void DiagramSweep::add_vertices() {
+void DiagramSweep::add_vertices(const JobStage& stage) {
   vertex_radii_.assign(diagram_.vertices.size(), k_infinity);
   for (std::size_t corner = 0; corner < diagram_.corner_vertices.size(); ++corner) {
     const Index vertex = diagram_.corner_vertices[corner];
     if (vertex == k_none || vertex_radii_[vertex] < k_infinity) continue;
+    stage.check();
     Event event{false, 0, {}, diagram_.vertices[vertex]};
     diagram_.sites_around(vertex, diagram_.side_edges[corner], event.sites);
     const Index site = event.sites[0];

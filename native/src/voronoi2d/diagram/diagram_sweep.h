@@ -15,7 +15,7 @@ namespace saddleback::voronoi2d {
 
 /// The diagram of sites with weights, none or one for each, which it keeps even if they are equal: a circle touches a
 /// site sooner by its weight.
-Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> weights);
+Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> weights, Job* job);
 
 /// Sweeps a circle: at radius R the points x with |x - c| + |x - s| - w = R form an ellipse about each site s that the
 /// circle about c has touched; the outermost parts of these ellipses are the beach curve, and what lies within is
@@ -27,7 +27,7 @@ class DiagramSweep {
   using Edge = SteppedSweep::Edge;
 
   /// The diagram must outlive this. O(n log n).
-  DiagramSweep(const Voronoi2d& diagram, const Vec2& center);
+  DiagramSweep(const Voronoi2d& diagram, const Vec2& center, const JobStage& stage);
 
   /// Lists them by radius: sites with a cell, and vertices.
   const std::vector<Event>& events() const { return events_; }
@@ -57,7 +57,7 @@ class DiagramSweep {
   std::vector<Index> sites_on_beach(double radius) const;
   std::optional<std::array<double, 2>> parameters_within(Index edge, const Bisector& curve, double radius) const;
   std::array<Vec2, 2> ends(const Part& part, const Bisector& curve) const;
-  void add_vertices();
+  void add_vertices(const JobStage& stage);
 
   const Voronoi2d& diagram_;
   Vec2 center_;
