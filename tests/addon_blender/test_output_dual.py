@@ -118,7 +118,7 @@ def test_the_panel_tells_quality_and_energy_and_faults_are_a_warning(capfd):
     lines = bpy.context.window_manager.saddleback_figures.splitlines()
     assert len(lines) == 2 and "irregular" in lines[0] and "Energy" in lines[1]
     remeshed(source, count=2, dual_policy="STRICT")
-    assert jobs.state.figures == []
+    assert not any("irregular" in line for line in jobs.state.figures)
     assert "has faults where cells are too large" in capfd.readouterr().out
     item = remeshed(source, count=2, dual_policy="REPAIR")
     assert len(item.data.vertices) > 3 and not item.data.validate()

@@ -150,6 +150,8 @@ class CellsOperator(SurfaceOperator):
 
     def figures(self, result: CellsResult) -> list[str]:
         """Returns how even the cells are."""
+        if result.figures is None and len(result.energy):
+            return [f"Energy: {result.energy[-1]:.4g}"]
         return lines_of(result.figures)
 
 
@@ -225,9 +227,8 @@ def _writes_density(settings: TessellateSettings) -> bool:
 def _steps(result: CellsResult) -> str:
     if not result.iterations:
         return ", stopped before the first iteration" if result.stop_reason == "cancelled" else ""
-    energy = f", energy {result.energy[-1]:.4g}" if len(result.energy) else ""
     steps = "iteration" if result.iterations == 1 else "iterations"
-    return f", {result.iterations} {steps}{ENDS.get(result.stop_reason, '')}{energy}"
+    return f", {result.iterations} {steps}{ENDS.get(result.stop_reason, '')}"
 
 
 def _added(result: CellsResult) -> str:
