@@ -12,9 +12,12 @@ from .texts import draw_text
 def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.Object) -> None:
     """Of the active layer. Sentences that were told stay until there is something else."""
     layer = active_layer(item)
-    if layer is None or layer.is_frozen:
-        return
     label, running = bpy.app.translations.pgettext_iface("Auto Update"), jobs.state.live_running
+    if layer is None or layer.is_frozen:  # as high as the switch, so that the first run moves no button below
+        row = layout.row()
+        row.enabled = False
+        row.label(text=label, translate=False, icon="FILE_REFRESH")
+        return
     if running is not None and running[0] == item.name:  # here, since a line of its own would push all below to and fro
         label = f"{label} {running[1]} %"
     layout.prop(layer, "auto_update", text=label, translate=False, toggle=True, icon="FILE_REFRESH")
