@@ -54,6 +54,7 @@ def main():
     """Enables the add-on and starts the scenarios."""
     bpy.context.preferences.system.viewport_aa = "OFF"  # a quarter of the time for each redraw in software
     bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.view.smooth_view = 0  # no view glides while a run begins
     scenarios.prepare()
     play(scenarios.in_order(Screen()))
 
