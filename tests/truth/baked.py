@@ -130,6 +130,7 @@ class Unfolded:
             if visible is None or _to_segment(*visible) >= best:
                 continue
             other, i = beside
+            self.patience -= len(self.segments.get(other, ()))
             flat = self.flat[other]
             along = (at_w - at_v) / self.lengths[other][i]
             frame = np.array([along, [-along[1], along[0]]])
