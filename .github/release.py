@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Checks that a tag may be released, or prints the text of its release.
 
 python3 .github/release.py v0.1.0 https://github.com/OWNER/REPOSITORY

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Puts the add-on and its native wheels into dist/: the wheels, the legacy zip and the extension zip.
 
 python addon/make_packages.py WHEEL...
@@ -123,7 +124,8 @@ def addon_files() -> Iterator[tuple[str, bytes]]:
     for path in sorted(ADDON.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(ADDON).as_posix(), path.read_bytes()
-    yield "LICENSE", (ROOT / "LICENSE").read_bytes()
+    yield "LICENSE", (ROOT / "addon/LICENSE").read_bytes()
+    yield "licenses/Saddleback-library.txt", (ROOT / "native/LICENSE").read_bytes()
     for path in sorted((ROOT / "native/licenses").iterdir()):
         yield f"licenses/{path.name}", path.read_bytes()
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shows every node asset on a ring of its own and renders one picture of all: run by Python with bpy.
 
 .cache/bpy-4.5/bin/python blend-samples/make_assets.py docs/images/assets.jpg

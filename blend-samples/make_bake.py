@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Bakes the cells of coarse rings and shows every map on one of its own: run by Python with bpy.
 
 .cache/bpy-4.5/bin/python blend-samples/make_bake.py docs/images/bake.jpg

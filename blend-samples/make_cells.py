@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Covers a model with geodesic cells through the add-on's operators, lights it and saves the scene: run by Blender.
 
     blender -b --factory-startup --python blend-samples/make_cells.py -- MODEL OUT.blend [OPTION ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the demo's model, a chameleon on its branch, with its painted density: run by Blender.
 
 blender -b --factory-startup --python blend-samples/make_creature.py -- OUT.blend

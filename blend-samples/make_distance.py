@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Distances and shortest paths on a model through the add-on's operators, lit and saved: run by Blender.
 
     blender -b --factory-startup --python blend-samples/make_distance.py -- MODEL OUT.blend [OPTION ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Combs a model through the add-on's operator, shows how it runs, lights it and saves the scene: run by Blender.
 
     blender -b --factory-startup --python blend-samples/make_fields.py -- MODEL OUT.blend [OPTION ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Writes a .blend for each look, a ring as one click makes it, into blend-samples/out: run by Python with bpy.
 
 .cache/bpy-4.5/bin/python blend-samples/make_look_files.py [LOOK ...]

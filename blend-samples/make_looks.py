@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shows every look on a ring of its own, as one click makes it, and renders one picture of all: run by Python with bpy.
 
 .cache/bpy-4.5/bin/python blend-samples/make_looks.py docs/images/looks.jpg

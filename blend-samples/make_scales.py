@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Clothes a model in scales that follow its strokes, through the add-on's operators, lights it, saves: run by Blender.
 
     blender -b --factory-startup --python blend-samples/make_scales.py -- MODEL OUT.blend [OPTION ...]

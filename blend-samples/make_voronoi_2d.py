@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Diagrams of the plane through the add-on's operator, lit and saved: run by Blender.
 
     blender -b --factory-startup --python blend-samples/make_voronoi_2d.py -- SCENE OUT.blend

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Renders a scene that make_cells.py saved: run by Blender, or by Python with the bpy package.
 
 blender -b --factory-startup --python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What `tests.digests` asks the library: every public answer, on the meshes, sites and files of the test suite.
 
 Coordinates that come from sines, powers or normal deviates are rounded to 24 bits, so that every platform asks the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Digests of all answers of the library, so that a change that should change nothing can be seen to change nothing.
 
 ``python -m tests.digests`` compares with `tests/digests.json`, which is written anew only when a change is meant to

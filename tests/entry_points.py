@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Asks every public entry point, one forked child for each question: `python -m tests.entry_points [PATTERN]`.
 
 In a child that a process forks after parallel calls; with threads=100000; with 200, 300 and 500 MB of memory left; and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lets the n-th allocation of native work fail, for each entry point and each n: a MemoryError, or the right result.
 
     python tests/failing_allocations.py [PATTERN]

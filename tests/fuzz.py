@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random and damaged meshes through the whole native library, or damaged graph files through its loader.
 
     python tests/fuzz.py [meshes|graph-files] [CASES] [SEED]

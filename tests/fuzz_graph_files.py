@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Damaged graph files: each is refused by one sentence or loaded as a graph with which all goes well.
 
 Half of the cases get the right checksum for their damage, so that what lies behind it is reached.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coverage-guided fuzzing of the mesh readers: tests/sanitize --fuzz readers [SECONDS].
 // The first byte of an input chooses the format, the rest is the file.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The add-on's mesh of cells from a split mesh that has no surface behind it: raised along its own normals."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Meshes made in code, by property: closed(), boundary(), good() (both), broken().
 
 Each is a `Case`: arrays, what is known about them in closed form, and `mesh`, built on demand. Use as

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Sourced after tests/setup.sh by what builds for other systems than this one: addon/package --platform windows-x64, and
 # tests/run --windows, --arm64 and --macos. What is fetched stays in .cache, what is compiled in build-PLATFORM.
 

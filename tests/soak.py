@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A long time of use in one process; see tests/soak. Runs where `bpy` is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells made without the native library: straight-line Voronoi cells of small meshes, cut along linear boundaries.
 
 They have everything that a real result has (branch points, closed loops, open borders), so that the add-on's writers

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Saddleback: geodesic cells, even tessellations and distances on painted meshes."""
 
 from __future__ import annotations

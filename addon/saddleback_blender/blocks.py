@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Data-blocks of this file and of others: names that lead back to them, since a linked one may have a local one's name,
 and whether they can be changed.
 """

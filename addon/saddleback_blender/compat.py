@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Differences between Blender 3.4 and 5.x, each behind one function: the only file that tests features or versions."""
 
 from __future__ import annotations

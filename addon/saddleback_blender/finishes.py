@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The materials of looks, made once a file and shared; one that is there is the artist's and stays as it is."""
 
 from __future__ import annotations

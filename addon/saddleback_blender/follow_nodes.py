@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Node groups that take points along with a mesh that is deformed.
 
 Each point knows the triangle of the mesh that it stands on: its three vertices, where in it the point is, and how it is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs that go on while Blender stays usable: one worker thread each, watched by a timer, ended before Blender quits.
 
 The thread works on arrays and never touches bpy; progress and cancel go through a token, never a call into Python from

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Node groups and materials of the output objects; ours carry a mark, so that the artist may rename them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Preferences: threads, device, what is kept in memory and on disk, and what the native library is and sees."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Changes to the file that are taken back where what they belong to fails: a run is written as a whole or not at all.
 
 What is new goes away by itself. Whatever changes something older says how it was (`remember` and the like); whatever

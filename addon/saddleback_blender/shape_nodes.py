@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Node group that puts shapes on points."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the nodes of a group and links them: each call answers with the socket that gives what the node makes."""
 
 from __future__ import annotations

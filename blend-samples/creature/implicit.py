@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Solids as signed distances: tubes along curves, blended into one body and turned into a closed mesh.
 
 Distances are negative inside. Shapes join by a smooth minimum (the quadratic one of I. Quilez), so that a leg grows

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Does what a sculptor does after the big forms stand: smoothing, creases, folds and fine noise."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A chameleon: the solids that it is made of, its painted density, and the places of its eyes.
 
 x points from tail to head, z up; the branch under its feet runs along x. Lengths are in units of about ten centimeters.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The strokes that say which way the chameleon's scales lie: from the nose to the tip of the tail, down the legs."""
 
 from __future__ import annotations

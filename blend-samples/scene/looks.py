@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Enamel for the cells, gold for the lines and studs, and a color for every cell."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Colors that go together: a ramp along the subject, bands across it, and a little life from cell to cell."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shows what diagrams of the plane are good for: a tiled plate, stippling, a vase, a shell, and the sweep that finds
 them.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Rings side by side, a name below each: for pictures that show several things at once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A photographer's corner: a seamless backdrop, three soft lights, a camera that finds its own distance."""
 
 from __future__ import annotations

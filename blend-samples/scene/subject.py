@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The mesh that gets the cells: read from a file or found in a .blend, stood upright, fine enough, its paint found."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Makes voronoi-growth.svg, processor time a site on one thread: python make_growth_plot.py. Takes half a minute."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the pictures of the documentation from the demo's chameleon: after blend-samples/run, call
 
     .cache/bpy-4.5/bin/python docs/images/make_pictures.py [NAME ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Makes tessellation-quality.svg, 2,000 cells as they start and become even: python make_quality_plot.py MESH."""
 
 from __future__ import annotations

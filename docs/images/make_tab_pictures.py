@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 r"""Makes the pictures of the tab, in a Blender with a window, high enough for the whole of it.
 
     SADDLEBACK_UI_FOLDER=/tmp LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -s "-screen 0 1000x1900x24" blender --factory-startup \

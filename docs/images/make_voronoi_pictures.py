@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the pictures of docs/voronoi_2d.md from the scenes of blend-samples/make_voronoi_2d.py:
 
 .cache/bpy-4.5/bin/python docs/images/make_voronoi_pictures.py [NAME ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The optional CUDA part: a library and a Python module of their own, so that the rest neither needs them nor links to
 # them. cudart is linked statically: the module loads on a machine without a driver and says so when asked.
 set(SADDLEBACK_CUDA_OLDEST 75)

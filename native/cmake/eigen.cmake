@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Eigen 3.4: the system's, or else the headers that PyPI carries.
 find_package(Eigen3 3.4 QUIET NO_MODULE)
 if(NOT Eigen3_FOUND)

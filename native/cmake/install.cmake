@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The C++ library, its headers, and what find_package(saddleback) reads: cmake --install build --component cpp --prefix ...
 # Python packages are made of the component "python" alone.
 include(GNUInstallDirs)
@@ -8,6 +9,8 @@ set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/saddleback)
 target_compile_definitions(saddleback INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_STATIC_ALIGN_BYTES=16>)
 install(TARGETS saddleback EXPORT saddleback ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT cpp)
 install(DIRECTORY include/saddleback DESTINATION include COMPONENT cpp)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/saddleback COMPONENT cpp)
+install(DIRECTORY licenses/ DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/saddleback COMPONENT cpp)  # OpenMesh is a part of it
 install(EXPORT saddleback NAMESPACE saddleback:: FILE saddlebackTargets.cmake DESTINATION ${_package} COMPONENT cpp)
 
 configure_package_config_file(cmake/saddlebackConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/saddlebackConfig.cmake

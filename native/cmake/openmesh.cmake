@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The mesh of OpenMesh's core with its asserts off, as objects that become a part of our library; its readers and writers
 # stay out.
 #

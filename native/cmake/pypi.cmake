@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # fetch_from_pypi(REQUIREMENT ARCHIVE SHA256 FOLDER PIP_OPTION...): unpacks a package of PyPI into ${SADDLEBACK_DEPS},
 # unless FOLDER is there.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The add-on enabled once, and an empty file for each test. Runs in Blender and in the `bpy` wheels alike."""
 
 import os

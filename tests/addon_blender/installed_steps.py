@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a user does with a package, in a process and a profile of their own; started by test_install.py.
 
     ... installed_steps.py -- first PACKAGE FILE.blend     install, enable, run, save the file and the preferences

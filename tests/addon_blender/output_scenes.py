@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Sources and results for the tests of the output objects, made without the native library."""
 
 import bpy

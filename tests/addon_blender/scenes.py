@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Objects made for tests, and what is read back from them."""
 
 import bpy

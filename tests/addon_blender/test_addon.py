@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The add-on as a whole: enabled and disabled, its preferences, a missing library, quitting while it computes."""
 
 import os

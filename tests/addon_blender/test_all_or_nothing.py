@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A write that fails, at whichever step, leaves the file as it was."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What was painted is read from every source as one number a vertex."""
 
 import bpy

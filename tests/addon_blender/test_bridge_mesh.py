@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A Blender mesh becomes the surface that the artist sees, in world space."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Objects of a collection as shapes: flat meshes, solids, curves, images; what is none is refused."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Densities from images, curvature, curves and a few painted places; the helpers that begin to paint."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that was made of a body goes with it: in every frame, in the view and in the final render, in copies."""
 
 import bpy

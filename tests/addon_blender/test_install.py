@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The packages of addon/package in an empty profile: installed, used, reopened, switched off and on."""
 
 import os

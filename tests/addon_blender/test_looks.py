@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Looks: one click, one picture; what they leave alone; the artist's own, kept as presets."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The panel's way: a thread, a timer, ESC.
 
 Blender without a window never calls `modal`; these tests do what its event loop does.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The operators as a script uses them: values, one step of undo, settings kept, outputs replaced and cleared."""
 
 import bpy

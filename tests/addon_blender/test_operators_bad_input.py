@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What cannot be done is refused in one sentence that names the object, and nothing changes."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.direction_field` as scripts call it: strokes of every kind, empties, attributes, what is shown."""
 
 import bpy

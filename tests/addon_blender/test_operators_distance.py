@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.distance`: curves and the cursor as sources, isolines, the preview material, graphs on disk."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.distribute` as scripts call it: bent copies, instances, outlines, attributes, and what is replaced."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.path` as scripts call it: curve objects, their points in order, their place."""
 
 import bmesh

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The repair makes a mesh usable and keeps what the artist put on it."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.voronoi_2d` as scripts call it: cells and edges of flat meshes and of surfaces, images, the sweep."""
 
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The dual mesh in Blender: where it is, what it keeps of the source, how it is replaced."""
 
 import bpy

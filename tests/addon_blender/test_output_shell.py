@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The lamp shell: one closed solid, thick and wide as asked, that does not pass through itself."""
 
 import bpy

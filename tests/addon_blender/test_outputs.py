@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the output objects hold, in all Blender versions."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Outputs are replaced and never piled up, belong to their source, keep what the artist did, and go away whole."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the panel begins with, and that scripts keep what they had: lengths by the cell, objects as they are seen."""
 
 import bpy

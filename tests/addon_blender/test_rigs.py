@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What artists keep beside a mesh: hidden assets, rigs, copies, links, overrides, scenes; read and shown as it is."""
 
 import bpy

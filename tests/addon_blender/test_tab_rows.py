@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the tab, the redo panel, the menu and the manual map offer: few settings, in the unit that is chosen."""
 
 from fnmatch import fnmatchcase

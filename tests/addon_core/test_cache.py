@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The cache keeps by content, drops the least recently used, and counts what is made."""
 
 import threading

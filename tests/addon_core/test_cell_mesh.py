@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The mesh of the cells: closed forms on planes, invariants on spheres."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Raised cells on creases: they neither cross nor wrinkle, and are as thick as asked, or told."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """From paint to density, in numbers."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Densities that are computed: from curvature, from curves, from a few painted places; and colors of images."""
 
 import meshes_of_core as shapes

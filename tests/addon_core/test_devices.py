@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Where graphs are built."""
 
 from __future__ import annotations

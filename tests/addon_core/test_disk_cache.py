@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Graphs on disk: used in the next session, built again when they are no good, the oldest gone first."""
 
 import os

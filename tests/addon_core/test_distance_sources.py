@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Distances from curves and their isolines; exact ones."""
 
 import meshes_of_core as shapes

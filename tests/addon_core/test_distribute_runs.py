@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes on a surface as the add-on asks for them: counts, sizes, fields, what is made of the placements."""
 
 from dataclasses import replace

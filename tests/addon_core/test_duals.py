@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The dual mesh of a run: what carries over from the surface, faults in words, figures."""
 
 import meshes_of_core as shapes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Fields of directions as the add-on asks for them: strokes, singularities, what is drawn of them."""
 
 from dataclasses import replace

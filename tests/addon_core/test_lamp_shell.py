@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The ribs between cells and the solid made of them."""
 
 import meshes_of_core as shapes

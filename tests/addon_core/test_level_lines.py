@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Isolines: on the level to rounding, whole, with the higher side on their left."""
 
 import numpy as np

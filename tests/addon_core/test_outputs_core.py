@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Line networks, colors and turns: what the output objects are made of."""
 
 from __future__ import annotations

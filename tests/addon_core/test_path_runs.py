@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Chains, loops and pairs of shortest paths; what cannot be joined is refused."""
 
 import meshes_of_core as shapes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Several native calls are told as one rising fraction and stopped by one cancel."""
 
 from itertools import pairwise

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Repairs as the operator asks for them, and what they leave of polygons."""
 
 import numpy as np

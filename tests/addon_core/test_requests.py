@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces without their loose vertices, and content keys."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Requests become results: the numbers of the Blender mesh, the cache, sentences, cancel."""
 
 import threading

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Borders that lie on each other are joined, and nothing else is."""
 
 import meshes_of_core as shapes

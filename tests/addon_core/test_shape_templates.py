@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes that come with the add-on, outlines from loops and masks, colors and turns of copies."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Plane diagrams without Blender: planes, polygons with common corners, darkness, the sweep's radii, the cache."""
 
 import meshes_of_core as shapes

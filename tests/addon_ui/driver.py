@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside a Blender with a window: plays scenarios as a person would, and writes what it saw.
 
     blender --factory-startup --enable-event-simulate --python-exit-code 9 --python driver.py

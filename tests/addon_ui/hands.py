@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A person at Blender: a screen to look at, a mouse, keys, and patience."""
 
 import os

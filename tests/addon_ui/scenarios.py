@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a person does in the tab, and what is seen; played by driver.py inside Blender."""
 
 import threading

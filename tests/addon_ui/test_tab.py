@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The tab in a Blender with a window: one Blender plays all scenarios (scenarios.py), each test looks at one."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Benchmarks by hand: ``.venv/bin/python -m tests.bench NAME`` runs tests/bench/NAME.py; no name lists them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One field by CGAL, for the benchmark of geodesics: cgal_geodesics MESH FIELD SOURCE, built with -DKIND_EXACT or
 // -DKIND_HEAT. The mesh: counts (int64), positions (float64), triangles (int32). Tells its times and memory as JSON.
 #include <CGAL/Simple_cartesian.h>

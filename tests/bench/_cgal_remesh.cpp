@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Isotropic remeshing by CGAL, for the benchmark of tessellation: cgal_remesh MESH MADE EDGE_LENGTH. Both meshes:
 // counts (int64), positions (float64), triangles (int32). Tells its CPU seconds.
 #include <CGAL/Polygon_mesh_processing/remesh.h>

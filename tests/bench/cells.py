@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whether every point lies in the cell of its nearest site: `python -m tests.bench cells [--points N] [MESH...]`.
 
 Cells by exact distances, on each mesh for three sets of random sites: 20, one for 70 vertices, three for each triangle

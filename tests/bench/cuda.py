@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A CUDA device: `python -m tests.bench cuda MESH...` for graphs of meshes and diagrams of the plane.
 
 Where there are several devices, also what they gain together: all parts but the transfers, against one of them.

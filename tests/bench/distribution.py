@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes that never collide: `python -m tests.bench distribution [--blender PATH] [--size R]`.
 
 On a torus of 400,000 faces, four classes, certificate included: CPU and wall seconds, copies, memory. In the same run

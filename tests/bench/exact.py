@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Exact distances: `python -m tests.bench exact FOLDER [FACTOR]`.
 
 Errors against closed forms and against pygeodesic (from vertices and from inside faces), and CPU time of one thread

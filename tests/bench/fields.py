@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Direction fields: `python -m tests.bench fields FOLDER [FACTOR] [LARGE_MESH ...]`.
 
 Whether indices are those that were asked for (told from the vectors alone), how well strokes are met, and how long

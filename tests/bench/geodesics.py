@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Distances over surfaces, beside what apt and pip offer: `python -m tests.bench geodesics MESH...`.
 
 For every mesh one table: preparation, one field (median of three sources), their errors over all vertices beyond the

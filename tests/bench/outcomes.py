@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What becomes of each mesh of a folder: `python -m tests.bench outcomes FOLDER`.
 
 Per file, in a process of its own: Mesh or the sentence that refuses it, repair, graph with k = 30, 200 relaxed cells,

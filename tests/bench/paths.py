@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Paths and coordinates: `python -m tests.bench paths FOLDER [FACTOR]`.
 
 How long a path takes after its field (CPU time of one thread, from the difference between many targets and one),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Vertices and edges of plane diagrams by CGAL's count: `python -m tests.bench plane_counts [LARGEST [KIND...]]`; 1e6.
 
 For every kind of sites and 1,000 to LARGEST of them: `voronoi_2d` by as many circles as are good and by a single one,

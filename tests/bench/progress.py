@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Progress and cancelling of the engine's long calls: `python -m tests.bench progress [--only TEXT] [MESH...]`.
 
 A line a call: its seconds, how much longer it takes watched than unwatched, the longest time in which neither the share

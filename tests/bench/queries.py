@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What questions to a built graph cost and how right the answers are: `python -m tests.bench queries [MESH...]`.
 
 Fields, nearest sources with their labels, A*, distances between any points; a column a mesh. Without meshes it makes a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Nearest points, sampling and tracing, CPU seconds on one thread, beside peers when they are installed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Even cells and their dual meshes: `python -m tests.bench tessellation [--cells N] [MESH...]`.
 
 Per mesh: CPU seconds an iteration and in all, vertices out, Euler characteristic (of the mesh in brackets), quality of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Builds of two commits side by side: `python -m tests.bench versions BEFORE AFTER [--threads N] MESH...`.
 
 BEFORE and AFTER are folders to import `saddleback` from (`build/python` of two checkouts). Each plays the calls of

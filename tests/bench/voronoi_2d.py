@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Voronoi diagrams of the plane: `python -m tests.bench voronoi_2d [LARGEST [THREADS]]`; 1e6 sites and one thread.
 
 Processor nanoseconds per site, medians over fresh sites in every repetition (the same ones again would train the

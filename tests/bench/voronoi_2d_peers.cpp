@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Voronoi diagrams by CGAL (exact) and Boost.Polygon (of coordinates rounded to 30 bits), for comparison:
 // `voronoi_2d_peers FILE [cgal]`, the file holding pairs of doubles; by CGAL alone if so asked. Prints, one line each:
 //   cgal SECONDS VERTICES EDGES      after merging vertices of more than three cells

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Additively weighted Voronoi diagrams by CGAL, for comparison: `voronoi_2d_weighted_peers FILE`, the file holding
 // triples of doubles: x, y, weight. Prints one line:
 //   cgal SECONDS VISIBLE HIDDEN VERTICES EDGES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A long call, watched and cancelled from another thread."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What holds for the cells of any sites on any mesh."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Exact geodesic distances by a library that is not ours: MMP as wrapped by pygeodesic."""
 
 from __future__ import annotations

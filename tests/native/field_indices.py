@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Indices of a field told from nothing but its vectors: the independent reference of the tests and the benchmark."""
 
 from __future__ import annotations

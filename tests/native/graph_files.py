@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A graph's file taken apart and put together again, as the format says: what the tests and the fuzzer damage."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One box in the dialects that programs write: each is (extension, contents)."""
 
 import struct

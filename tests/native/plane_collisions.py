@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Where two polygons touch last when they are slid apart: every corner of one against every edge of the other."""
 
 from __future__ import annotations

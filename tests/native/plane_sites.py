@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sites of the plane that sweeps find hard, and the proof that a diagram of any sites is right."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Checks of curves on a mesh that use nothing but positions: straight across edges, legal at vertices."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Weighted sites of the plane that are hard, and what brute force says of them."""
 
 from __future__ import annotations

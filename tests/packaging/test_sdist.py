@@ -1,9 +1,11 @@
+# SPDX-License-Identifier: MIT
 """The source package: what is in it, and that strangers can build it.
 
 Building takes minutes, so it is done only where SADDLEBACK_PACKAGING=all asks for it, as the workflows do.
 """
 
 import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -50,8 +52,18 @@ def test_holds_what_the_build_reads_and_nothing_else(sdist):
     wanted = {name for name in tracked() if name.startswith(needed)} - {
         name for name in tracked() if name.startswith("native/cmake/platforms/")
     }
-    wanted |= {"CMakeLists.txt", "native/CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE", "PKG-INFO"}
+    wanted |= {"CMakeLists.txt", "native/CMakeLists.txt", "pyproject.toml", "README.md", "PKG-INFO"}
+    wanted |= {"LICENSE", "native/LICENSE"}
     assert names(sdist) == wanted
+
+
+def test_all_in_it_is_under_mit(sdist):
+    with tarfile.open(sdist) as archive:
+        texts = {item.name: archive.extractfile(item).read() for item in archive if item.isfile()}
+    (about,) = (text.decode() for name, text in texts.items() if name.endswith("PKG-INFO"))
+    assert "License-Expression: MIT\n" in about and "License-File: native/licenses/OpenMesh.txt\n" in about
+    said = {line for text in texts.values() for line in re.findall(rb"SPDX-License-Identifier: (\S+)", text[:200])}
+    assert said == {b"MIT"}
 
 
 def test_a_stray_file_stays_out(tmp_path):

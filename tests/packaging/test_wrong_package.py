@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A package for another Python or system says in one sentence which file is right."""
 
 import importlib

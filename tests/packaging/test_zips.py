@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The packages for Blender, made of wheels that hold a word instead of a library."""
 
 import ast
@@ -72,6 +73,7 @@ def test_the_extension(dist, wheels):
     assert [name.split("-")[2] for name in manifest["wheels"]] == ["cp311", "cp313"]
     assert {name for name in files if name.endswith(".whl")} == {name[2:] for name in manifest["wheels"]}
     assert {"LICENSE", "licenses/OpenMesh.txt", "licenses/Eigen.txt", "licenses/pybind11.txt"} <= set(files)
+    assert b"GNU GENERAL PUBLIC LICENSE" in files["LICENSE"] and b"MIT" in files["licenses/Saddleback-library.txt"]
     assert not any("__pycache__" in name for name in files)
     for name, data in files.items():
         if name.endswith(".py"):
@@ -88,7 +90,7 @@ def test_the_legacy_zip(dist, wheels):
         "saddleback/_saddleback.cp310.so",
         "saddleback/_saddleback.cp311.so",
     }
-    assert "saddleback_blender/licenses/OpenMesh.txt" in files
+    assert {f"saddleback_blender/licenses/{name}.txt" for name in ("OpenMesh", "Saddleback-library")} <= set(files)
     assert "saddleback_blender/blender_manifest.toml" not in files
     tree = ast.parse(files["saddleback_blender/__init__.py"])
     (info,) = (

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Work on a device that is stopped in its midst."""
 
 from __future__ import annotations

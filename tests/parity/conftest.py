@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tests that a CUDA device gives the processor's answers. Without one they do not run, and the summary says so."""
 
 from __future__ import annotations

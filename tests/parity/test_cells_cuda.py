@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells and relaxations whose nearest sites a CUDA device finds are the processor's, to the bit."""
 
 from __future__ import annotations

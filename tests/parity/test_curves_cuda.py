@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Diagrams of sites along lines and circles, whose circles are far larger than the sites are apart."""
 
 from __future__ import annotations

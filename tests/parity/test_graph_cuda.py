@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Graphs that a CUDA device builds are the processor's, to the bit: files of both are compared."""
 
 from __future__ import annotations

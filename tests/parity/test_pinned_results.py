@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Results in memory that a CUDA device writes by itself are the same, one after the other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Distance fields and nearest sources that a CUDA device finds are the processor's, to the bit."""
 
 from __future__ import annotations

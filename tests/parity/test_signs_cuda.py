@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A CUDA device decides on points of the plane as rational numbers do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Voronoi diagrams of the plane that a CUDA device finds are the processor's, to the bit."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sorts the arguments of tests/run: what the outer pytest gets, and what the one inside each Blender gets.
 
 Run as a script, prints what the arguments need to be set up: "blender", "bpy", both or nothing. Standard library only,

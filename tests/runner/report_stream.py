@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sends what a pytest session finds, test by test, to the pytest that started its process.
 
 One JSON object a line, through the file descriptor that SADDLEBACK_REPORTS names.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The second half of tests/run: one pytest session over everything, the Blenders included.
 
 python tests/runner/run.py --bpy "4.5 5.0" -- PYTEST_ARGUMENTS

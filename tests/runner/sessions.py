@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The outer pytest's view of the tests that run inside a Blender: each Blender is one item that brings many reports.
 
 The process runs its own pytest (tests/run_in_blender.py) over tests/addon_blender; its reports arrive one by one and

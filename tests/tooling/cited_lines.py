@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Corrects the numbers of the lines that docs/releasing.md cites as `file:line`: `what stands there`.
 
 python -m tests.tooling.cited_lines

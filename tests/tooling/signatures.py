@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The signatures in docs/algorithms, as the package's stub has them: `python -m tests.tooling.signatures` writes them.
 
 A page names what it shows in a line ``<!-- signatures: name, Class.method -->`` before a block of Python.

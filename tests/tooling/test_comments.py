@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Doc comments begin a sentence, and the words of the house are those of docs/glossary.md."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The C++ library as others have it: its public headers, and an example built against an installed copy."""
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ def installed(tmp_path_factory) -> Path:
         pytest.skip("the module was not built by CMake here")
     folder = tmp_path_factory.mktemp("installed")
     run("cmake", "--install", BUILD, "--prefix", folder, "--component", "cpp")
+    assert {path.name for path in (folder / "share/licenses/saddleback").iterdir()} >= {"LICENSE", "OpenMesh.txt"}
     return folder
 
 

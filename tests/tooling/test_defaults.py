@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """An option's default is the same wherever it is written down: property, settings, binding, stub."""
 
 from __future__ import annotations

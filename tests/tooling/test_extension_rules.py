@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the extensions site forbids, and that docs/releasing.md points at what it says."""
 
 import ast

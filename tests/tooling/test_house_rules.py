@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The arrows between the rooms point one way, and the versions agree."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tools say of the whole tree: formatting, lint, types, names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The examples of the Python guide run, page by page, on small meshes in place of the reader's."""
 
 from __future__ import annotations

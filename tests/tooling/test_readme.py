@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the README shows, runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tests/run sorts its arguments, and tells when a Blender fails, dies or lies."""
 
 from __future__ import annotations

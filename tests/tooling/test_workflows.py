@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The workflows, which run on other machines than this: linted, and agreeing with what they call."""
 
 import importlib.util

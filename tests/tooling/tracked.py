@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The files of the repository."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Slow, obvious truths that guard the public answers, and the machine that sends random input past both.
 
 `registry` names the checks and what they guard, `families` makes the random input, `fuzz` runs, `shrinking` makes a

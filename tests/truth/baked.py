@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about baked images: each texel by itself, its way to the cell's edge by unfolding the faces about it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about the parts that cells come in: boundaries, split meshes, duals and their faults, by recount."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about geodesic cells: nearest sites by brute force over one exact field a site.
 
     python -m tests.truth.cells [--runs 200] [--seed 0] MESH...

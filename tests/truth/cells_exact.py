@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about exact cells and their duals: areas by clipped polygons and by brute force, counts, lengths."""
 
 from __future__ import annotations

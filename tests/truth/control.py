@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What surrounds the answers: jobs, devices, caches, pictures."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about the diagram of disks, additively weighted sites of the plane, by brute force in 250 digits."""
 
 from __future__ import annotations

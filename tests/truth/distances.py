@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about distances: Euclid where a mesh is a convex piece of the plane, else all straight lines one by one.
 
 `exact_by_truth` unfolds every sequence of faces that light from a root can run through, in decimal arithmetic of 50

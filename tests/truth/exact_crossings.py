@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whether triangles pass through each other, in fractions: for `self_crossings`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random meshes and sites of every kind that once broke something, and of kinds that did not yet.
 
 A family is a function of a random generator that returns vertices (V, 3) and triangles (F, 3), of some 4 to 300 faces.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about direction fields: turns and indices recounted from the vectors alone, and what fields go through."""
 
 from __future__ import annotations

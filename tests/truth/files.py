@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What files hold, by the plainest means: areas by the shoelace formula in fractions, a reader of the plainest OBJ."""
 
 from __future__ import annotations

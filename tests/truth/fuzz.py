@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sends random input past the library and its truths, and makes what fails small.
 
     python -m tests.truth.fuzz [--seconds 60] [--seed N] [--only PATTERN] [--workers 2]

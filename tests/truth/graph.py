@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about the distance graph: Euclid where a mesh lies flat, its own rules elsewhere, parts beside others.
 
 Neither windows nor arcs are looked at: only distances, paths and what they must obey.

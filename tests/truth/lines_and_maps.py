@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lines on surfaces, maps into the plane, curvature, distances between surfaces: closed forms and invariants."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about what is laid on a surface: where that unrolls, all of it lies in the plane where a placement says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about shapes in their plane: closed forms of the presets, exact polygons, masks by counting pixels."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about the plane by rational numbers and brute force: doubles are taken as the fractions that they are."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The checks of this folder, by name, and the public entry points that each guards."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about even cells and centers: energies by closed forms over cells in fractions, centers of mass where the
 surface is flat.
 """

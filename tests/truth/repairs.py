@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a repair must do whatever comes in: end in a mesh that it then leaves alone, face outward, close cracks."""
 
 from __future__ import annotations

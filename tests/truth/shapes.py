@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about shapes on surfaces: which overlap, by polygons of the plane in fractions on surfaces that unroll."""
 
 from __future__ import annotations

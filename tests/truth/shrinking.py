@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Makes a failing input small, so that a person can read it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about meshes themselves: counts, areas, borders, normals, samples, nearest points, by plain numpy."""
 
 from __future__ import annotations

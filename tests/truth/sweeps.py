@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about sweep circles and the lists of a plane diagram's cells: circles through three sites, in fractions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every public entry point with the checks that guard it: `python -m tests.truth.table` writes docs/truths.md."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A short run of random input past the truths, and the table of what guards what."""
 
 from __future__ import annotations

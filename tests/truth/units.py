@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about units: powers of two round no coordinate, so that in another unit every answer is the same to the bit.
 
 What is compared is a list of arrays, each with the power of the unit that it is measured in: 0 for numbers and angles,

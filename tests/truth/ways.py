@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Truths about ways on surfaces: paths of exact fields, traced lines and their way back, coordinates along curves on
 flat pieces of the plane by Euclid, graphs that went through a file.
 """

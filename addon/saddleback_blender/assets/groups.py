@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The node groups of the asset library: modifiers for what Tessellate makes, and groups for materials."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The asset library: a file with the node groups, its catalogs, and its place in the preferences."""
 
 from __future__ import annotations

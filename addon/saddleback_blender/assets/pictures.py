@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Thumbnails of the assets: a patch of cells, drawn from what the node groups make of their attributes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Lets an output know its source: by a token, a random word that both keep, so that both may be renamed and saved;
 and the layer of the source that it belongs to, by a word of the layer's, "" of the first.
 """

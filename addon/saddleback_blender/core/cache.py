@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Keeps what was computed, by content, so that the next run computes only what changed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The mesh of the cells: from the library's split mesh to gaps, rims and heights."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Densities: painted ones as they are, others computed from the surface, from curves, from a few painted places."""
 
 from __future__ import annotations

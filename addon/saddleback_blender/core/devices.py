@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Chooses where graphs and diagrams are found, as the preferences say. The result is the same everywhere."""
 
 from __future__ import annotations

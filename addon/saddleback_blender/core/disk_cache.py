@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Distance graphs kept in a folder, by content: what was built in one session needs no building in the next.
 
 A file that cannot be used is built again; what went wrong becomes a note, never an error, for the run itself needs no

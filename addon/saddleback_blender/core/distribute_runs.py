@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes on a surface: from templates, a field and a density to placements, and to what is made of them."""
 
 from __future__ import annotations

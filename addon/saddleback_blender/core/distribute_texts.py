@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Distributions of shapes in a person's words: how it went, how dense it is, what went wrong and what to do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Fields of directions: from strokes, singularities and alignment to vectors, and to what shows them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Says what a run tells about its cells, in words."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cells that go on from where they were, run after run, while what says where they are small changes."""
 
 from __future__ import annotations

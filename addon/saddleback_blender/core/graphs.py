@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes and distance graphs for the runs: found in memory, on disk, or built."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Lengths that are given as shares of a cell, or of the model where there are no cells, in world units."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cells while they are being relaxed: the lines between them after the latest step, found in a thread of their own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs on the half of an object, and their results on both sides."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Finds the native library when it is first needed, so that Blender starts, updates and removes the add-on without it.
 
 In the extension the library is a wheel that Blender installs; in the legacy zip it lies in a folder of the package.

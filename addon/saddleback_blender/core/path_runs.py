@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shortest paths between chosen points: a chain, a loop, or all pairs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The watched part of a run: several native calls told as one rising fraction, stopped by one cancel."""
 
 from __future__ import annotations

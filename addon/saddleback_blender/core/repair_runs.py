@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Repairs as artists ask for them: cracks closed by the distance that it takes, holes filled, what is left told."""
 
 from __future__ import annotations

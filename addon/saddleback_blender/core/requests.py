@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Holds what the core is given: arrays of one surface and a way to find it again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Holds what a run answers: frozen dataclasses of numpy arrays in world space, with the Blender mesh's own vertex
 numbers.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The runs themselves: from a request to a result through the native library and the cache."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Holds what a run is asked to do: one frozen dataclass for each operator, field for field its properties."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Where on the surface the vertices of cells' outputs stand: found with the cells, not when they are written."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Voronoi diagrams of the plane, on flat meshes and brought to surfaces."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The looks: what one click makes of an object, an entry each. Plain data: nothing here knows Blender.
 
 A look is the settings of one operator that differ from what the panel begins with, and a finish: the colors and the

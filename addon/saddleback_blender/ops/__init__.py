@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Operators: gather from Blender, let the core compute, write the result."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.apply_look`: one click, one picture; it asks one of the other operators, with the look's settings."""
 
 from __future__ import annotations

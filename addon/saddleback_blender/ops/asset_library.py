@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.add_asset_library`: writes the node groups to a file of assets and tells Blender of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.bake`: the cells of the active object as images over its UV map."""
 
 from __future__ import annotations

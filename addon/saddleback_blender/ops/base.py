@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Does what all operators that compute share: gather, run (at once for scripts, in a thread for the panel), write."""
 
 from __future__ import annotations

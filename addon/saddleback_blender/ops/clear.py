@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.clear`: removes what the other operators made for the active object, and nothing else."""
 
 from __future__ import annotations

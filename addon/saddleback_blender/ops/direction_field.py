@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.direction_field`: which way things shall point, all over the surface."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.distance`: how far every vertex is from the nearest source, along the surface."""
 
 from __future__ import annotations

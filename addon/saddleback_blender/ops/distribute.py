@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.distribute`: shapes all over a surface that follow a field and never touch each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.export_stl`: the lamp shell as a file for 3D printers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Operators on the list of layers: add, duplicate, freeze, delete."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Auto Update: what was made in a layer follows what it was made from, by the phases of the operators' own runs.
 
 A handler marks what changed; a timer takes `step`s on the main thread, and only there anything of Blender is touched:

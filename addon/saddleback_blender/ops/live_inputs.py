@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Which data-blocks the runs of a layer read, by kind and name: references die with Undo."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Looks of the artist's own, in Blender's preset menu and the folder of its presets."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Operators that put a brush into the artist's hand: a density to paint, strokes to draw, a singularity to place."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.path`: the shortest ways between points, along the surface, as a curve object."""
 
 from __future__ import annotations

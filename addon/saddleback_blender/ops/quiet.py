@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Operators that nobody pressed: the phases of a run (reading, computing, writing) without a window or Undo."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Rows of Adjust Last Operation: what one turns after a run, six at most, in place of every property there is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.repair`: makes the active object's mesh one that the others accept, keeping what is painted on it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.tessellate`: geodesic cells, even ones, and everything that can be made of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`saddleback.voronoi_2d`: Voronoi diagrams of the plane, on flat meshes and on surfaces through their maps."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every setting once: as a property of its operator and, for the panel and the next session, kept on the object.
 
 The properties themselves lie in a file a panel.

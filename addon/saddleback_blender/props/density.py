@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Holds how dense cells and shapes are to be: for all panels that ask."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The properties of `saddleback.distance`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Kinds of properties that several panels have, each made anew for each of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Layers: several patterns on one object, each with settings and outputs of its own.
 
 The active layer's settings are those of `Object.saddleback` itself, where scripts, panels and files of version 0.1 have

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Files that version 0.1 wrote: what nobody chose there stays what it was before the panel began with other values."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Keeps what a library override keeps. Of an object that overrides another file's, Blender saves only registered
 properties that may be overridden, and from 5.0 on no groups of them: token and settings are kept as texts besides.
 """

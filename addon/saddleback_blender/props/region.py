@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the object that a layer covers: settings of the layer, which all operators that run in it share."""
 
 from __future__ import annotations

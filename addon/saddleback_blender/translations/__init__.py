@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The tab in other languages, through Blender's own tables: one JSON file a language, English text to its translation.
 
 Figures, results and refusals, which are sentences with names and numbers in them, stay English.

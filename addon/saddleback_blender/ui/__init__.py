@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab "Saddleback" and the menu: they draw, and nothing else."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The list of layers in the tab, and the buttons below it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The switch of Auto Update, and what it has to say."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The looks in the tab: a button each, and Blender's menu of presets for the artist's own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Object > Saddleback, which Blender's search finds, too, and pages of the manual for the buttons' context menus."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The panels of the tab "Saddleback" in the 3D View's sidebar."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Rows of settings, the same in a panel (settings kept on the object) and for an operator (its own properties)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Text in panels: Blender cuts a label off at the panel's edge, so sentences are broken into lines."""
 
 from __future__ import annotations

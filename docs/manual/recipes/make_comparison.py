@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the pictures of the page "how it compares": cells along the surface and through the air, of the same sites.
 
 .cache/bpy-4.5/bin/python docs/manual/recipes/make_comparison.py [hand] [tail]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the pictures and animations of the recipes, by the operators that an artist's clicks run.
 
     .cache/bpy-4.5/bin/python docs/manual/recipes/make_recipes.py [NAME ...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The models of the recipes, all made by code."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Compiles and links for macOS with the clang of PyPI's ziglang, to see that it does; what it makes runs nowhere here.
 # SADDLEBACK_ZIG is the folder of the commands that tests/platforms.sh makes: .../aarch64 or .../x86_64.
 set(CMAKE_SYSTEM_NAME Darwin)

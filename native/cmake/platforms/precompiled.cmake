@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Given as CMAKE_PROJECT_INCLUDE where nothing is optimized: reading Eigen and pybind11 takes the compiler most of its time
 # then, so it reads them once.
 function(precompile_headers)

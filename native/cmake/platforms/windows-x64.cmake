@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Compiles for 64-bit Windows on a Debian, with its g++-mingw-w64-x86-64-posix. Besides the Python that runs here, name
 # Python_INCLUDE_DIR, Python_LIBRARY (python3XX.dll itself) and PYTHON_MODULE_EXTENSION: tests/platforms.sh does.
 set(CMAKE_SYSTEM_NAME Windows)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Geodesic Voronoi cells and even tessellations on triangle meshes."""
 
 from saddleback import _interpreter  # noqa: F401  (first: before the compiled module)

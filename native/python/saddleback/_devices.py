@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tells what can compute here: the processor, always, and the CUDA devices that this build and this machine offer."""
 
 from __future__ import annotations

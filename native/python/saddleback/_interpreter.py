@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Refuses to load the compiled module where it cannot work: under another Python or system, in a sub-interpreter."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The check as a command: ``python -m saddleback.check MESH PLACEMENTS``; status 1 when shapes collide."""
 
 import argparse

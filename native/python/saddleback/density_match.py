@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Measures how well an arrangement follows the density that was painted."""
 
 from typing import NamedTuple

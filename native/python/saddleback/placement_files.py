@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Shapes and where they lie, as a text file that other programs can read."""
 
 import json

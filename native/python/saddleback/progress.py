@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A progress bar for scripts: long work can be watched on a terminal and stopped with Ctrl-C."""
 
 from __future__ import annotations

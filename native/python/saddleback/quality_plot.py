@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The quality of triangles as a picture that any browser shows."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Densities and sizes over a surface, as one could paint them: from distances and from how it bends."""
 
 import numpy as np
@@ -79,7 +80,7 @@ def density_by_curvature(mesh: Mesh, range_: float = 16.0, contrast: float = 1.0
     """A density that is larger where the surface bends more.
 
     In proportion to the root mean square of the principal curvatures, 1 at its median, kept within a factor
-    sqrt(range_) of that, then raised to `contrast`. A surface that does not bend has 1 everywhere.
+    `sqrt(range_)` of that, then raised to `contrast`. A surface that does not bend has 1 everywhere.
 
     Returns
     -------

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The asset library: what is in its file, and what its node groups make of the outputs of Tessellate."""
 
 from __future__ import annotations

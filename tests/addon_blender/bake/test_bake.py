@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cells as images: what pixels say, depths, tiles, files, and what is refused."""
 
 import bpy

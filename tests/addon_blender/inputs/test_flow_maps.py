@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Flow maps, painted or in images: which way shapes point by the UV map."""
 
 import bpy

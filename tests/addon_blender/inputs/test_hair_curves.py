@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Curves of the newer kind, which hair is of: strokes, guides of densities, sources of distances."""
 
 import bpy

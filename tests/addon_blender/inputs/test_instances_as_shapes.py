@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Collection instances as shapes: what an empty shows is laid on the surface as one."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Several patterns on one object: each with settings, objects and attributes of its own."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Patterns that are the same to both sides of an object's X."""
 
 import bpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A layer covers a part of its object: painted, a group, selected faces or a material."""
 
 import bpy

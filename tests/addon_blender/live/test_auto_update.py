@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Auto Update: what was made follows what it was made from.
 
 Blender without a window has no timers; these tests take the steps that one would.

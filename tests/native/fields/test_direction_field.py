@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Direction fields: exact indices, strokes that are met, smoothness where nothing is asked."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Values spread from a few places, curvatures, densities from distances."""
 
 from __future__ import annotations

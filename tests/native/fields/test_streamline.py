@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Streamlines: curves that follow the field inside faces, and say why they end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Rings of needles, fans and ribbons, which windows cross at once: right, alike everywhere, and fast."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a computation takes beside its input, at its peak."""
 
 from __future__ import annotations

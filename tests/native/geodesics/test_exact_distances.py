@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Exact distances and paths: closed forms, another exact library, geodesics by their definition."""
 
 from __future__ import annotations

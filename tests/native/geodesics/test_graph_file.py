@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Graphs on disk: what was saved comes back to the bit, anything else is refused by a sentence, old files stay."""
 
 from __future__ import annotations

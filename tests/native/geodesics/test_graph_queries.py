@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The graph's queries: batches, A*, points inside faces, curves; and that all of them agree to the bit."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Log map and exponential map: closed forms, each the other's inverse, marks of what has no straight way."""
 
 from __future__ import annotations

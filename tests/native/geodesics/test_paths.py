@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Paths: as long as the distance, on the surface, straight in faces and over edges, legal at saddles."""
 
 from __future__ import annotations

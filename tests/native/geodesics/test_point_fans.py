@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Arcs of points inside faces and on edges: found by the rule of the graph's own, and as accurate."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Coordinates along curves: closed forms, feet that are as far as said, sides, curves that cross and double back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The graph's distances: closed forms, an exact library, the axioms of a metric."""
 
 from __future__ import annotations

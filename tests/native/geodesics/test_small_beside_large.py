@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Graphs of meshes whose parts or edges differ by up to twelve orders of magnitude."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Exact distances, log maps and their inverse where vertices or lines nearly coincide: Euclid, unrolled and folded."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Feature curves: every sharp, border or chosen edge once, cut at corners; a remesh keeps them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Distance of two surfaces: closed forms, and never less than samples say."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Mesh: what it measures, what it refuses, and that it never crashes."""
 
 import copy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Polygons of files cut into triangles: what they cover, whatever their form."""
 
 import time

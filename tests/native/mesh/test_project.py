@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Nearest points against brute force over all faces, exact snapping, ties, threads."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """read_mesh and read_arrays: every format, and files that lie."""
 
 import gzip

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """repair: whatever goes in, a valid mesh comes out, changed no more than needed."""
 
 import numpy as np

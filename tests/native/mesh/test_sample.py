@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sampling: numbers follow mass, points keep apart, every component gets its share, seeds repeat."""
 
 from __future__ import annotations

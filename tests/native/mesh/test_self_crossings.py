@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Triangles that pass through each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Curves on the surface: what traces and boundaries give is one, what leaves the surface is not."""
 
 from __future__ import annotations

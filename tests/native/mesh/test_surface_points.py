@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """SurfacePoints as a container, and what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Straightest geodesics against closed forms: plane, cylinder, sphere, cube; reversal; degenerate starts; an end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Plain triangle arrays: closed forms on planes, and errors that name the culprit."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a cancelled call leaves behind goes back to the system while the caller goes on."""
 
 from __future__ import annotations

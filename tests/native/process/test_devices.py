@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What happens where there is no CUDA module, or one that does not fit; tests/parity has the rest."""
 
 from __future__ import annotations

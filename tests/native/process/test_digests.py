@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Answers that are promised to be equal to the bit on every platform are those that `tests/digests.json` keeps.
 
 All the others, which this platform's libm may move by a bit: `python -m tests.digests`.

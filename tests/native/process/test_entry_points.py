@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every public entry point in forked children, with far too many threads, with little memory, and under Ctrl-C.
 
 On a small mesh; `python -m tests.entry_points` asks them on a larger one.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Jobs: progress, cancelling from another thread, the progress bar."""
 
 import io

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The package as a whole: its names, errors, types and documentation."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Safe in any process: after a fork, in daemon threads at the end, under Ctrl-C and limits of memory, when pickled."""
 
 from __future__ import annotations

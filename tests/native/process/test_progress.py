@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Progress of long calls: it rises, never stands still for long, ends at 1, and costs nothing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Threads stay from loop to loop, number no more than makes sense, and leave signals to the program."""
 
 import os

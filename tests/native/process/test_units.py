@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every function of lengths at units of a millionth to a million: the same answers, but for rounding.
 
 Powers of two are equal to the bit, see `tests/truth/units.py`, whose questions are asked here.

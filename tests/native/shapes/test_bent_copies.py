@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Meshes bent onto the surface: they lie on it, hang together, and know what they are pieces of."""
 
 from __future__ import annotations

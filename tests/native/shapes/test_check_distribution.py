@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The independent checker: nothing found where there is nothing, and every planted collision found, no other."""
 
 from __future__ import annotations

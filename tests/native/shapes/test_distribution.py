@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Distribution: nothing collides, nothing more fits, and what was asked for is what lies there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Shapes laid on the surface: closed forms where it unrolls, invariants where it does not, and every product of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Files of placements: whole or not at all, and broken ones told with the place."""
 
 import json

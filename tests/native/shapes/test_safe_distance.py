@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Safe distances: never too small against every corner and edge, hardly too large."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Shapes: what is accepted, what is refused in which words, and what is known about them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Images of cells: closed forms of the plane, unfolding by hand elsewhere, margins, tiles, bad input."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells that stay when a few sites move, come or go: the same as all found anew, and untouched far away."""
 
 from __future__ import annotations

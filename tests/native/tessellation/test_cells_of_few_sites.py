@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells tell what the graph tells that they are made from, however few or close the sites; nothing is too short."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Relaxation: the energy never rises, cells follow the paint, nothing depends on threads or scale."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A triangulation with as many vertices as were asked for: sites move until the dual has the surface's topology."""
 
 from __future__ import annotations

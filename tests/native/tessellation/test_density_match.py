@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How well copies follow a density: exact shares, the law of large numbers, and copies that ignore it."""
 
 from __future__ import annotations

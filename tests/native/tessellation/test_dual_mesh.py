@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The dual of cells: a triangulation of the surface, or the truth about why not."""
 
 from __future__ import annotations

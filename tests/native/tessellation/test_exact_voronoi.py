@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells by exact distances: against closed forms, and against fields of every site alone."""
 
 from __future__ import annotations

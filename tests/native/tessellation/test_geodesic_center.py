@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Riemannian centers of points and of cells."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells: they partition the surface, their boundaries are equidistant, nothing is lost in degenerate cases."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The picture of triangles' quality: its steps are the shares of a histogram."""
 
 from __future__ import annotations

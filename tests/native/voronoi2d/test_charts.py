@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Plane diagrams on surfaces: maps, what is refused, and every point of the surface against its nearest site."""
 
 from __future__ import annotations

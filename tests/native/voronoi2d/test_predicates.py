@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The predicates against exact rational arithmetic."""
 
 from fractions import Fraction

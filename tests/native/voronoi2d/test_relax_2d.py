@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Relaxation in the plane: exact integrals, an energy that never rises, cells that follow a density."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The sweep circle made visible: events, ellipse arcs, growing edges."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sweep circles over weighted sites, and several at once: events, ellipse arcs, growing edges."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Edges between disks of which one nearly lies in the other: thin hyperbolas, polylines, their number of points."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Voronoi diagrams of the plane: exact topology for any finite sites."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is asked of a diagram of the plane: areas, nearest sites, cells within polygons."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sites that nearly coincide: vertices, areas and everything cut from them stay right to a few roundings."""
 
 from __future__ import annotations

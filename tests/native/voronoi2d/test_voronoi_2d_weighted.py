@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Additively weighted Voronoi diagrams: exact topology for any finite disks."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads at points of a surface what an artist put on the mesh: groups, UV maps, attributes, shading, materials."""
 
 from __future__ import annotations

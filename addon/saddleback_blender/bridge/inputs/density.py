@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads what was painted on a mesh, from any of its sources, as one number a vertex."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Vector attributes and flow maps -> directions in the world."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Objects as Blender shows them, those among them that it does not evaluate."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The numbers by which a mesh's vertices know their groups."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The materials that faces show, which are not always those of the mesh."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A Blender mesh -> the arrays of a surface, in world space."""
 
 from __future__ import annotations

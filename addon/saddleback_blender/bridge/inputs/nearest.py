@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The vertex of an object that is nearest to a place in the world."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The part of an object that a layer covers: which of its faces are in the region."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The shapes to lay on a surface: meshes, curves and images of a collection, one image, or those of the add-on."""
 
 from __future__ import annotations

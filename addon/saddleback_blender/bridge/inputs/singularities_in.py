@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Empties -> the places about which a field turns, and how often."""
 
 from __future__ import annotations

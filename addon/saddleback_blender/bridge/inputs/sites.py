@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads where cells are centered, and distances and paths begin: vertices chosen or painted, objects, curves, the
 cursor.
 """

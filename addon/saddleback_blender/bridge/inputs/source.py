@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The object that an operator works on: may it be used, and is it still the same when the answer comes?"""
 
 from __future__ import annotations

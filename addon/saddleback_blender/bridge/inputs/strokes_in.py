@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Strokes that a field shall follow: annotations, grease pencil, curves -> lines in the world."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads what a plane diagram is made from: UV maps, images, sites with weights."""
 
 from __future__ import annotations

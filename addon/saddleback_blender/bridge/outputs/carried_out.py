@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Writes what was read at points of a mesh, onto the objects that have them as vertices."""
 
 from __future__ import annotations

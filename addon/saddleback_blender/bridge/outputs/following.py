@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Lets outputs go along with their source where armatures, shape keys, lattices and subdivision move its surface."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Notices what an artist changed in an output by hand, so that no run takes it away.
 
 A run writes on each output what its data were. Where they are others by the next run, the edited ones stay, in an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shows and hides all that was made in a layer; what the artist hid by hand stays hidden."""
 
 from __future__ import annotations

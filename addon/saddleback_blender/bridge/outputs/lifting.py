@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Outputs that would lie on the surface they are made of, and fight with it for every pixel, lifted by a hair."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Draws what a run shows while it goes on: lines over the 3D views, which are nothing in the file.
 
 An object would be in undo steps, files and renders, and Undo would leave others pointing at it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Arrays -> named attributes of a mesh, and the list of those that we made."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The cells as a mesh object: a cell number and a color on every face."""
 
 from __future__ import annotations

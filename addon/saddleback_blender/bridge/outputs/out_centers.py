@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The centers of the cells as points that carry what something put on them needs to know."""
 
 from __future__ import annotations

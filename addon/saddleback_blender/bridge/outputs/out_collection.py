@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Output objects: where they go, how they are found again, and how they all go away.
 
 An output knows its source by a token, a random word kept on both as a custom property, so that both may be renamed,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Lines along the surface as curve objects with tubes: isolines and shortest paths."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The dual mesh as an object: a remesh of the source that keeps what the artist put on it."""
 
 from __future__ import annotations

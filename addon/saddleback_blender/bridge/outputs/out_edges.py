@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The lines between cells as an object: an edge mesh or a curve, both with tubes."""
 
 from __future__ import annotations

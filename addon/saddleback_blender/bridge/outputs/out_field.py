@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A field of directions into Blender: the vector attribute, arrows to look at, streamlines."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Baked files -> images of the .blend."""
 
 from __future__ import annotations

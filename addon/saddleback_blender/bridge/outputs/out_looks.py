@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What each operator makes that has looks, and how it goes away when the object gets a look of another."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The mesh with the outlines of its shapes cut in, as an object that keeps what the artist put on the source."""
 
 from __future__ import annotations

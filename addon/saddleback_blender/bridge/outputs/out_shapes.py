@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes on a surface into Blender: bent copies, instances, outlines, what the surface's vertices know of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The lamp shell as a mesh object."""
 
 from __future__ import annotations

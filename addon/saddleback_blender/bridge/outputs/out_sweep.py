@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A sweep circle as objects that play back: the circle, whose keyframed scale is its radius, and what it uncovers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The mesh that attributes go to: the object's own or, where modifiers made other vertices, a new object beside it."""
 
 from __future__ import annotations

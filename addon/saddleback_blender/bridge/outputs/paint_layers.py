@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Layers that an artist can paint on: made, selected, kept apart from what we write ourselves."""
 
 from __future__ import annotations

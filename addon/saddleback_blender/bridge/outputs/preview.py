@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A look at distances: a material of colors and lines on the object, without touching the artist's own materials.
 
 Each material slot of the object is linked to the object instead of the mesh and shows the preview; the mesh keeps its

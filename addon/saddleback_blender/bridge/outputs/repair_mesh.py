@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Brings a repaired surface back into the Blender mesh it came from, with as much of the artist's data as can be kept.
 
 BMesh carries every layer there is (groups, UVs, colors, creases, shape keys) through the few changes that a repair

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Keeps where a mesh's vertices are at rest, before shape keys, armatures and other modifiers: Blender tells when
 asked.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A field as flat arrows on the surface: darts, lenses or stars; and balls where it is singular."""
 
 from __future__ import annotations

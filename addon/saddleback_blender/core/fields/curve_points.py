@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Curves in space -> what of a surface they pass over, as curves on it that distances can be measured from.
 
 A curve is followed in steps shorter than the mesh's edges, each brought to the nearest point of the surface, and joined

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Images as densities: how dark they are, and places drawn by that."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Leads from what was painted to the density that the tessellation is given."""
 
 from __future__ import annotations

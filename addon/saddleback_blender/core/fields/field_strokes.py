@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Drawn lines -> strokes that a field of directions can follow."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Vector attributes and flow maps -> the library's field."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Hair as it is drawn: smooth between its points."""
 
 from __future__ import annotations

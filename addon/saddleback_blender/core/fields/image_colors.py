@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Colors of an image at places of its square."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads how often a field turns about a singularity: from a number, a fraction, or the name of an empty."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Lines along a field that keep their distance from each other, so that all of the surface shows how it runs.
 
 After [jobard1997]: a line ends where it would come too near to one that is there. Lines begin at even points, in their

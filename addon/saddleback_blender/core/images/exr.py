@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """OpenEXR files of 32-bit floats, packed by ZIP. After "OpenEXR File Layout", openexr.com."""
 
 from __future__ import annotations

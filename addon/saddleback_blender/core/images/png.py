@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """PNG files of 8 or 16 bits. After ISO/IEC 15948:2004."""
 
 from __future__ import annotations

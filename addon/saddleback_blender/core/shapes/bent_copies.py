@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Copies of shapes bent onto the surface, as one mesh that knows whose each face is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The surface with the outlines of its shapes cut in."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tells where a corner of a cell's mesh lies within its cell: coordinates for materials that repeat in every cell."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Seen from above: what an image or a mesh covers of its plane, as a mask that an outline is made from."""
 
 from __future__ import annotations

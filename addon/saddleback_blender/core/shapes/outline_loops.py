@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Closed lines in a plane -> outlines with their holes; and the border of a flat mesh as such lines."""
 
 from __future__ import annotations

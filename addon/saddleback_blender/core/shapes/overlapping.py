@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes that overlap like scales: laid by footprints that touch no other, drawn longer, rising from root to tip.
 
 A footprint is the shape made shorter along the field, and a little narrower, so that the tips of those behind reach

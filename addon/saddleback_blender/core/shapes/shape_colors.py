@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A color for each shape on a surface: of its class, a little lighter or darker by chance."""
 
 from __future__ import annotations

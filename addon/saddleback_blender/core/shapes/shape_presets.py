@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes that come with the add-on: scales, studs, feathers, leaves, tiles."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Finds how large shapes are: by their count, by a density."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Makes what is laid on a surface: an outline, and what stands on it as a small mesh in the outline's own units."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Distance of every vertex to the boundary of the cell that it lies in.
 
 The mesh is split along the cell boundaries: every triangle belongs to one cell, and a boundary segment is an edge whose

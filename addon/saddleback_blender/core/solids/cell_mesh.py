@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The cells of a tessellation as a mesh: a gap between cells, a bevelled rim, a raised plateau.
 
 Input is the split mesh (every triangle inside one cell). The distance to the boundary of the own cell is linear over

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Raise a surface and close it: walls along its border, and a copy from below."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Finds where a triangle mesh passes through itself, as Blender will store it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Directions in which a surface is raised: normals that turn slowly, so that neighboring columns do not cross."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Edges of lines, in any order -> the lines."""
 
 from __future__ import annotations

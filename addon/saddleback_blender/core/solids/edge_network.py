@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The lines between cells as one network: polylines that meet at a branch point share that vertex."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Clipped cells of the plane as one polygon mesh: equal corners become one vertex, sides become edges."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cells of a flat mesh with gaps, raised, with sloping rims: exact polygons, whatever the mesh's triangles."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cut a triangle mesh along a level line of a function that is linear over every triangle (marching triangles).
 
 A mesh is carried as `fields` (V,k), all the numbers of a vertex side by side (position, normal, the function, ...), so

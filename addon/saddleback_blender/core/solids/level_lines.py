@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Level lines of a function that is linear over every triangle: the exact ones, as few long polylines.
 
 A vertex exactly on a level counts as below it. So every triangle that a level crosses is crossed along one segment,

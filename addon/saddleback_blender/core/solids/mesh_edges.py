@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Edges of a triangle mesh given as an index array: all of them, and those on its border."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The ribs between cells as a strip of the surface: all that lies within half the rib's width of a line between cells.
 
 The mesh is refined where ribs run, until no edge there is longer than half their width; then it is cut along the level

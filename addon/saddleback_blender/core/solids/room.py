@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Gives a solid on a surface the thickness that it has room for: where it meets itself it becomes thinner."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Parts of a mesh whose borders lie on each other, made one: texts and imported meshes are often not joined there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A strip of a surface made thick to both sides: one closed solid that does not pass through itself.
 
 Each vertex moves along a direction that is the surface's normal, smoothed over the thickness: where directions change

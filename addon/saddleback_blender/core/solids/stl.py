@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles as a binary STL file."""
 
 from __future__ import annotations

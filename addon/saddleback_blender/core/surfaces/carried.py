@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Values of a mesh's vertices, corners and faces at points of its surface."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A pleasant color for every cell, the same every time, unlike those of its neighbors.
 
 Colors are drawn in Oklab, where equal steps look equal [ottosson2020]: a middling lightness and chroma, any hue.

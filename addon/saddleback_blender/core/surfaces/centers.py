@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tells what a cell's center carries: how large its cell is and how to turn something to stand on it."""
 
 from __future__ import annotations

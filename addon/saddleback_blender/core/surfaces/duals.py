@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The dual of cells: a triangle mesh of their sites, and how good its triangles are."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The lines that a remesh shall keep: sharp edges, marked ones, the border."""
 
 from __future__ import annotations

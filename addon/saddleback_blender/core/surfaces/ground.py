@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The surface that the outputs of a run stand on."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Places and directions told by the surface about the place that they belong to, so that they go with it when it moves
 and turns.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The mirror of an object whose mesh is alike to both sides: its half, and what was made there on the other side."""
 
 from __future__ import annotations

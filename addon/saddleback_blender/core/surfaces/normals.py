@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Normals of a surface at its points."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Parts of a surface: a choice of its triangles, as a surface of its own."""
 
 from __future__ import annotations

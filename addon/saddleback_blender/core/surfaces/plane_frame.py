@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The plane of a flat surface: to its coordinates and back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Points in space that keep their distance."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Turns as quaternions and as Euler angles, as every version of Blender reads them from attributes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Leads from a repair of triangles to a repair of polygons: which stay, which turn round, which give way to triangles.
 
 The library repairs triangles and says which old vertex and face became which new one. An artist's mesh has polygons

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """World places as seen from an object."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The plane that a diagram is made in: a flat mesh's own, its UV map's, or the disk that a surface is laid into."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Leads from the numbers and places that an artist chose to points of the library's mesh."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Points of a surface in their order -> curves on it, each straight from point to point within a face.
 
 Neighbors in one face are joined as they are, those in faces with a common edge through that edge. Between others the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A sweep circle as it grows over a flat mesh: what of the diagram is there at which radius."""
 
 from __future__ import annotations
