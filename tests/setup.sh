@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Sourced by the commands that need the project built (tests/run, tests/sanitize, addon/package, blend-samples/run):
 # what is missing on the machine, the virtual environment, the build. Each step looks first, and is quick when nothing is to be done.
 # The caller has `set -euo pipefail` and stands in the project's root.
@@ -76,7 +77,7 @@ build_native() {
 set_up_tools() {
   install_packages "the build" "${build_packages[@]}"
   find_python
-  fill_venv .venv "the build and test tools" "$python" -r tests/requirements.txt
+  fill_venv .venv "the build and test tools" "$python" -r tests/requirements.txt -r docs/site/requirements.txt
 }
 
 # set_up_build: after set_up_tools; .venv/bin/python can `import saddleback` afterwards.
