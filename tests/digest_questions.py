@@ -291,6 +291,15 @@ def dual(case: meshes.Case, way: Way, policy: Any, count: int) -> Iterable[objec
     ]  # fmt: skip
 
 
+@asked(LARGE, few={"count": 6}, many={"count": 40})
+def faces_of_cells(case: meshes.Case, way: Way, count: int) -> Iterable[object]:
+    sites = sb.sample(case.mesh, count, seed=2, one_per_component=True)
+    found = sb.geodesic_voronoi(graph_of(case, way), sites, threads=way.threads, device=way.device)
+    polygons = found.polygons("strict")
+    points, quads = found.dual("strict").quads()
+    return [*all_of(polygons, "vertices corners offsets polygon_cell missing"), *surface(points), quads]
+
+
 def relaxed(case: meshes.Case, way: Way, **options: Any) -> sb.CentroidalVoronoi:
     return sb.centroidal_voronoi(graph_of(case, way), threads=way.threads, device=way.device, **options)
 

@@ -207,6 +207,8 @@ def calls(at: Inputs) -> dict[str, Call]:
         "GeodesicVoronoi.dual_paths": lambda **more: at.cells.dual_paths(**more),
         "GeodesicVoronoi.centers": lambda **more: at.cells.centers(**more),
         "GeodesicVoronoi.dual": lambda **more: at.cells.dual(**more),
+        "GeodesicVoronoi.polygons": lambda **more: at.cells.polygons(**more),
+        "DualMesh.quads": lambda: at.cells.dual().quads(),
         "GeodesicVoronoi.cells_at": lambda: at.cells.cells_at(at.points),
         "GeodesicVoronoi.locate": lambda: at.cells.locate(at.points),
         "GeodesicVoronoi.split": lambda: at.cells.split(),

@@ -11,6 +11,7 @@
 namespace saddleback::bindings {
 
 void bind_bake_cells(py::module_& m);
+void bind_cell_polygons(py::module_& m);
 void bind_charts(py::module_& m);
 void bind_check(py::module_& m);
 void bind_devices(py::module_& m);
@@ -141,6 +142,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_exact(m);
   bind_graph(m);
   bind_paths(m);
+  bind_cell_polygons(m);
   bind_dual_mesh(m);
   bind_triangle_arrays(m);
   bind_hausdorff_distance(m);

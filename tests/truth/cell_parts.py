@@ -199,3 +199,74 @@ def lifted_parts(sites: Floats, rng: Random) -> None:
     nearest = np.linalg.norm(middles[:, None] - sites, axis=2)
     behind = nearest[np.arange(len(whole)), lifted.face_cell[whole]] - nearest.min(axis=1)
     assert behind.max(initial=0) <= 1e-14 * size
+
+
+def assert_nearest(mesh: sb.Mesh, cells: sb.GeodesicVoronoi, points: sb.SurfacePoints, owners: list[set[int]]) -> None:
+    """To the owners of each point no other site is nearer, by exact distances."""
+    table = np.array([sb.ExactField(mesh, cells.sites[i]).distance_to(points) for i in range(len(cells.sites))])
+    for point, own in enumerate(owners):
+        behind = table[sorted(own), point] - table[:, point].min()
+        assert behind.max(initial=0) <= 1e-3 * longest_edge(mesh), f"{behind.max()} nearer to another site"
+
+
+@guards("CellPolygons", "GeodesicVoronoi.polygons")
+def polygons_by_recount(mesh: sb.Mesh, rng: Random) -> None:
+    """Corners of polygons are as near to their own cells as to any; sides are shared by two, of the cells that meet;
+    where no polygon is missing, they are the surface over again.
+    """
+    if not is_usual(mesh):
+        return
+    cells = exact_cells(mesh, far_sites(mesh, rng))
+    polygons = cells.polygons("strict", bend=float(rng.choice([0.0, 0.15, np.inf])))
+    with_area = np.flatnonzero(cells.areas > 0)
+    assert polygons.added == 0
+    assert sorted([*polygons.polygon_cell.tolist(), *polygons.missing.tolist()]) == with_area.tolist()
+    faces = [part.tolist() for part in np.split(polygons.corners, polygons.offsets[1:-1])] if len(polygons) else []
+    owners: list[set[int]] = [set() for _ in polygons.vertices]
+    sides: dict[tuple[int, int], int] = {}
+    for cell, face in zip(polygons.polygon_cell.tolist(), faces, strict=True):
+        assert len(set(face)) == len(face) >= 3
+        for a, b in zip(face, face[1:] + face[:1], strict=True):
+            assert (a, b) not in sides, f"a side of cells {sides[a, b]} and {cell}"
+            sides[a, b] = cell
+            owners[a].add(cell)
+    met = {(min(a, b), max(a, b)) for a, b in cells.edge_cells.tolist()}
+    joined = {(min(c, sides[b, a]), max(c, sides[b, a])) for (a, b), c in sides.items() if (b, a) in sides}
+    whole = set(polygons.polygon_cell.tolist())
+    assert joined == {pair for pair in met if pair[0] != pair[1] and set(pair) <= whole}
+    if len(owners):
+        assert_nearest(mesh, cells, polygons.points, owners)
+    if not len(polygons.missing):
+        edges = {(min(side), max(side)) for side in sides}
+        chi = mesh.vertex_count - mesh.edge_count + mesh.face_count
+        assert len(polygons.vertices) - len(edges) + len(polygons) == chi
+        assert mesh.is_closed == all(side[::-1] in sides for side in sides)
+
+
+@guards("DualMesh.quads", "DualMesh")
+def quads_by_recount(mesh: sb.Mesh, rng: Random) -> None:
+    """Corners of quads are as near to their own sites as to any; where the dual mesh is whole, so are they, with three
+    for each triangle.
+    """
+    if not is_usual(mesh):
+        return
+    dual = exact_cells(mesh, far_sites(mesh, rng)).dual("strict")
+    points, quads = dual.quads()
+    sites, edges = len(dual.sites), dual.edges
+    assert len(points) == sites + len(edges) + len(dual.cells.branch_points)
+    owners: list[set[int]] = [set() for _ in range(len(points))]
+    for i, (a, b) in enumerate(edges.tolist()):
+        owners[sites + i] = {a, b}
+    for center, before, site, after in quads.tolist():
+        assert center >= sites + len(edges) > min(before, after) >= sites > site
+        assert {site} <= owners[before] & owners[after]
+        owners[center].add(site)
+    assert_nearest(mesh, dual.cells, points, owners)
+    if not dual.issues and len(quads):
+        counts = edges_of(quads)
+        assert max(counts.values()) <= 2
+        if len(quads) == 3 * len(dual.triangles):  # but at a border through a branch point
+            vertices = len(np.unique(quads))
+            assert vertices - len(counts) + len(quads) == dual.euler_characteristic - (
+                sites - len(np.unique(quads[:, 2]))
+            )

@@ -1,5 +1,7 @@
 #include "convert/points.h"
 
+#include "convert/curves.h"
+
 namespace saddleback::bindings {
 namespace {
 
@@ -50,6 +52,17 @@ SurfacePoint as_surface_point(const py::object& value, const Mesh& mesh, const c
 const Mesh& as_mesh(const py::object& value, const char* argument) {
   if (!py::isinstance<Mesh>(value)) throw InputError(message(argument, ": wanted a Mesh, got a ", type_of(value)));
   return py::cast<const Mesh&>(value);
+}
+
+std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
+  std::vector<const SurfaceCurve*> result;
+  if (curves.is_none()) return result;
+  for (const py::handle& curve : curves) {
+    if (!py::isinstance<SurfaceCurve>(curve))
+      throw InputError(message("curves: wanted SurfaceCurves, got a ", Py_TYPE(curve.ptr())->tp_name));
+    result.push_back(&py::cast<const SurfaceCurve&>(curve));
+  }
+  return result;
 }
 
 }  // namespace saddleback::bindings

@@ -7,8 +7,11 @@
 #include <pybind11/stl.h>
 #include <span>
 
+#include "saddleback/tessellation/cell_polygons.h"
 #include "saddleback/tessellation/triangle_quality.h"
 
+#include "convert/cells.h"
+#include "convert/curves.h"
 #include "convert/dual.h"
 #include "convert/points.h"
 
@@ -67,6 +70,43 @@ py::array edge_lengths(const py::object& self) {
   return view_of(std::span<const double>(*dual.edge_lengths), self);
 }
 
+py::object cells_of(const Dual& dual) {
+  if (!dual.repaired) return dual.owner;
+  return make_cells(GeodesicVoronoi(*dual.repaired), dual.graph, false);
+}
+
+py::tuple quads(const Dual& dual, const py::object& curves) {
+  const std::vector<const SurfaceCurve*> lines = as_curves(curves);
+  DualQuads made = without_gil([&] { return dual_quads(*dual.mesh, *dual.cells, lines); });
+  return py::make_tuple(std::move(made.points), to_rows<Index>(std::move(made.quads)));
+}
+
+constexpr const char* k_quads_doc = R"(Cut each triangle into three quads, with all vertices on the surface.
+
+The triangles' middles are the branch points of the cells, the edges' middles lie on the boundaries between cells: one
+step of Catmull-Clark without its smoothing, on the surface.
+
+Parameters
+----------
+curves : sequence of SurfaceCurve, optional
+    Along which edges of the mesh run: an edge between two sites on them has its middle where the boundary between their
+    cells crosses them.
+
+Returns
+-------
+tuple of SurfacePoints and (q, 4) int32
+    Points: the sites, the middle of each of `edges`, the branch points. Quads: counter-clockwise, from the branch
+    point. Between sites on the mesh's border the middle is where the boundary of their cells ends.
+
+Raises
+------
+InputError
+    Curves of another mesh.
+
+Notes
+-----
+O(cells + boundaries). After E. Catmull, J. Clark: Recursively generated B-spline surfaces, 1978.)";
+
 void bind_dual(py::module_& m) {
   py::class_<Dual>(m, "DualMesh", py::module_local(),
                    "The triangulation of the sites that is dual to cells; made by `GeodesicVoronoi.dual`. Unpacks "
@@ -88,6 +128,8 @@ void bind_dual(py::module_& m) {
                              "boundary; where vertices are in its way, of the shortest way over the boundary, as the "
                              "cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those. "
                              "Found when first asked for, O(faces crossed) each.")
+      .def_property_readonly("cells", &cells_of, "GeodesicVoronoi: the cells of its sites.")
+      .def("quads", &quads, py::arg("curves") = py::none(), k_quads_doc)
       .def_readonly("issues", &Dual::issues, "List of DualIssue; empty: a triangulation of the surface.")
       .def_readonly("added", &Dual::added, "Number of sites that repair added.")
       .def_readonly("euler_characteristic", &Dual::euler_characteristic, "Vertices - edges + triangles.")

@@ -5,6 +5,7 @@
 #include "saddleback/tessellation/centroidal_voronoi.h"
 
 #include "convert/cells.h"
+#include "convert/curves.h"
 #include "convert/devices.h"
 #include "convert/points.h"
 
@@ -34,17 +35,6 @@ RelaxationStart::From as_start(const std::string& name) {
   if (name == "coarse_to_fine") return From::coarse_to_fine;
   if (name == "sample") return From::sample;
   throw InputError(message("start: wanted 'auto', 'coarse_to_fine' or 'sample', got '", name, "'"));
-}
-
-std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
-  std::vector<const SurfaceCurve*> result;
-  if (curves.is_none()) return result;
-  for (const py::handle& curve : curves) {
-    if (!py::isinstance<SurfaceCurve>(curve))
-      throw InputError(message("curves: wanted SurfaceCurves, got a ", Py_TYPE(curve.ptr())->tp_name));
-    result.push_back(&py::cast<const SurfaceCurve&>(curve));
-  }
-  return result;
 }
 
 /// Shows memory that is never written again: Python's pointer to it is not const, for want of a holder that is.

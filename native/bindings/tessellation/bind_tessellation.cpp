@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "saddleback/tessellation/cell_polygons.h"
 #include "saddleback/tessellation/geodesic_center.h"
 
 #include "convert/cells.h"
@@ -73,7 +74,7 @@ Dual dual(const py::object& self, const std::string& policy, const py::object& t
   const JobIn token(job);
   DualMesh mesh = without_gil([&] { return dual_mesh(graph, cells.diagram, chosen, count, token); });
   const GeodesicVoronoi* const diagram = mesh.repaired ? mesh.repaired.get() : &cells.diagram;
-  return {std::move(mesh), self, &graph.mesh(), diagram, std::nullopt};
+  return {std::move(mesh), self, cells.graph, &graph.mesh(), diagram, std::nullopt};
 }
 
 py::tuple locate(const Cells& cells, const py::object& points, const py::object& job) {
@@ -128,6 +129,50 @@ Cancelled
 Notes
 -----
 O(cells + boundaries). H. Edelsbrunner, N. R. Shah: Triangulating topological spaces, 1997 (the closed-ball property).)";
+
+CellPolygons polygons(const Cells& cells, const std::string& policy, const py::object& bend, const py::object& threads,
+                      const py::object& job) {
+  const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
+  const CellPolygonOptions options{
+      .policy = as_policy(policy), .bend = as_real(bend, "bend"), .threads = as_integer(threads, "threads")};
+  const JobIn token(job);
+  return without_gil([&] { return cell_polygons(graph, cells.diagram, options, token); });
+}
+
+constexpr const char* k_polygons_doc = R"(Make a polygon for each cell: a mesh whose faces are the cells.
+
+Its vertices are where three or more cells meet, where boundaries end at the mesh's border, and where boundaries bend.
+Neighbors share their corners and sides: a closed surface gives a closed mesh. Two cells that meet along several
+boundaries, and cells with fewer than three corners, get corners within those boundaries, so that no two sides join the
+same corners.
+
+Parameters
+----------
+policy : str
+    For cells that are no disks, or fill a sphere by two, and so have no polygon. "repair": add sites, as `dual` does.
+    "strict": `missing` names them. "fail": refuse.
+bend : float
+    How far a side may leave the boundary that it stands for, in parts of the size (root of the area) of the smaller of
+    its cells; where it would be more, there are corners on the way. inf: none but those needed.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+CellPolygons
+
+Raises
+------
+InputError
+    A negative bend; a cell without a polygon where the policy is to fail, or repair does not mend it.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O((V + F + boundaries) log F). Corners on the way after D. Douglas, T. Peucker: Algorithms for the reduction of the
+number of points required to represent a digitized line, 1973.)";
 
 SurfacePoints corners(const Cells& cells, const py::object& cell) {
   return points_at(cells.diagram, cells.diagram.corners(as_integer(cell, "cell")));
@@ -394,6 +439,8 @@ void bind_tessellation(py::module_& m) {
            py::arg("job") = py::none(), k_centers_doc)
       .def("dual", &dual, py::arg("policy") = "repair", py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_dual_doc)
+      .def("polygons", &polygons, py::arg("policy") = "repair", py::kw_only(), py::arg("bend") = 0.15,
+           py::arg("threads") = 0, py::arg("job") = py::none(), k_polygons_doc)
       .def("cells_at", &cells_at, py::arg("points"),
            "The cells of points of the surface (vertices or SurfacePoints), (m,) int32. Ties go to the smaller cell. "
            "O(cells that share a face) each.")

@@ -41,6 +41,7 @@
 #include "saddleback/support/large_array.h"
 #include "saddleback/tessellation/bake_cells.h"
 #include "saddleback/tessellation/cell_cache.h"
+#include "saddleback/tessellation/cell_polygons.h"
 #include "saddleback/tessellation/centroidal_voronoi.h"
 #include "saddleback/tessellation/dual_mesh.h"
 #include "saddleback/tessellation/geodesic_center.h"
