@@ -70,6 +70,27 @@ def read_edge_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     return vertices.reshape(-1, 2)
 
 
+CREASE = "crease_edge"  # the attribute that has been the creases of edges since 4.0
+
+
+def read_creases(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """(E,) how sharp each edge stays when the mesh is subdivided, 0 to 1."""
+    creases = np.zeros(len(mesh.edges), np.float32)
+    if "crease" in bpy.types.MeshEdge.bl_rna.properties:
+        mesh.edges.foreach_get("crease", creases)
+    elif CREASE in mesh.attributes:
+        mesh.attributes[CREASE].data.foreach_get("value", creases)
+    return creases
+
+
+def write_creases(mesh: bpy.types.Mesh, creases: NDArray[np.float32]) -> None:
+    """Sets what `read_creases` reads."""
+    if "crease" in bpy.types.MeshEdge.bl_rna.properties:
+        mesh.edges.foreach_set("crease", creases)
+    else:
+        (mesh.attributes.get(CREASE) or mesh.attributes.new(CREASE, "FLOAT", "EDGE")).data.foreach_set("value", creases)
+
+
 def read_selected_vertices(mesh: bpy.types.Mesh) -> NDArray[np.bool_]:
     """(V,) selected in Edit Mode, as last left."""
     selected = np.zeros(len(mesh.vertices), bool)

@@ -98,7 +98,7 @@ def test_sites_are_moved_for_a_dual_mesh_only_and_only_where_they_may_move():
 
 def test_only_some_faults_are_told_one_by_one():
     none = np.empty((0, 3))
-    dual = Dual(none, none.astype(np.int32), none, none, 0, tuple(f"fault {i}" for i in range(5)))
+    dual = Dual(none, none.astype(np.int32), none, none, 0, 0, tuple(f"fault {i}" for i in range(5)))
     (told,) = faults_of(dual)
     assert "fault 2; and 2 more" in told and "fault 3" not in told
 

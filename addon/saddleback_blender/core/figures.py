@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from .results import CellMesh, Dual, Figures, LampShell
+from .results import CellMesh, Dual, Figures, LampShell, SurfacePolygons
 
 # Faults told one by one; of more only the number.
 MOST_TOLD = 3
@@ -64,6 +64,16 @@ def cell_faults_of(cells: CellMesh) -> list[str]:
         return []
     told = "1 cell passes" if count == 1 else f"{count} cells pass"
     return [f"{told} through others or itself, where the surface is folded: repair the mesh there"]
+
+
+def polygon_faults_of(polygons: SurfacePolygons) -> list[str]:
+    """One sentence where cells have no polygon."""
+    count = len(polygons.missing)
+    if not count:
+        return []
+    told = ", ".join(str(cell) for cell in polygons.missing[:MOST_TOLD]) + (", ..." if count > MOST_TOLD else "")
+    what = "1 cell has no face" if count == 1 else f"{count} cells have no face"
+    return [f"{what}, since none can be as large ({told}): ask for more cells, or choose Repair"]
 
 
 def lost_of(lost: int, thinner: int = 0) -> str:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,10 @@ from .results import (
     PlacedShapes,
     Reals,
     ShapeValues,
+    SurfacePolygons,
 )
+from .surfaces.corner_places import corner_places
+from .surfaces.duals import with_corners
 from .surfaces.mirrors import Mirror
 from .surfaces.quaternions import quaternions_of, turned
 
@@ -95,6 +98,7 @@ def tessellate(request: TessellateRequest, mirror: Mirror, progress: Progress) -
         edge_closed=np.tile(result.edge_closed, 2),
         twin=np.concatenate([np.arange(count), np.flatnonzero(~on)]).astype(np.int32),
         mesh=None if result.mesh is None else _cells(result.mesh, mirror, twins),
+        polygons=None if result.polygons is None else _polygons(result.polygons, mirror, twins, progress),
         dual=None if result.dual is None else _dual(result.dual, mirror, progress),
         shell=None if result.shell is None else _shell(result.shell, mirror),
     )
@@ -162,23 +166,74 @@ def _named(mesh: CellMesh) -> list[tuple[str, Indices]]:
 
 
 def _dual(dual: Dual, mirror: Mirror, progress: Progress) -> Dual:
-    vertices, _, triangles, twice, _ = _joined(dual.vertices, dual.vertices, dual.triangles, mirror)
+    vertices, _, polygons, twice, _ = _joined(dual.vertices, dual.vertices, dual.polygons, mirror)
+    triangles = _joined(dual.vertices, dual.vertices, dual.triangles, mirror)[2]
     faces, barycentric = _on_whole(vertices[len(dual.vertices) :], mirror, progress)
-    return replace(
+    marks = dual.marks
+    if marks is not None:
+        twins = np.arange(len(dual.vertices), dtype=np.int32)
+        twins[twice] = len(dual.vertices) + np.arange(int(twice.sum()), dtype=np.int32)
+        marks = marks.along(marks.edges, twins[marks.edges])
+    whole = replace(
         dual,
         vertices=vertices,
         triangles=triangles,
         faces=np.concatenate([dual.faces, faces]),
         barycentric=np.concatenate([dual.barycentric, barycentric]),
-        added=dual.added + int(twice[len(dual.vertices) - dual.added :].sum()),
+        added=dual.added + int(twice[dual.sites - dual.added : dual.sites].sum()),
+        quads=None if dual.quads is None else polygons,
+        marks=marks,
     )
+    whole = with_corners(whole, _whole_mesh(mirror, progress))
+    assert whole.corner_faces is not None
+    return replace(whole, corner_faces=mirror.whole.of_mesh(whole.corner_faces))
+
+
+def _polygons(polygons: SurfacePolygons, mirror: Mirror, twins: Indices, progress: Progress) -> SurfacePolygons:
+    """Both sides; a cell across the plane is two polygons, with an edge along the plane between them."""
+    count, on = len(polygons.vertices), mirror.is_on(polygons.vertices)
+    both, other = mirror.both(polygons.vertices, on)
+    number = np.arange(count, dtype=np.int32)
+    number[~on] = count + np.arange(int((~on).sum()), dtype=np.int32)
+    lengths = np.diff(polygons.offsets)
+    ends = np.repeat(polygons.offsets[:-1] + polygons.offsets[1:] - 1, lengths)
+    back = ends - np.arange(len(polygons.corners))
+    vertices = np.concatenate([both, other[~on]])
+    corners = np.concatenate([polygons.corners, number[polygons.corners[back]]])
+    offsets = np.concatenate([polygons.offsets, polygons.offsets[1:] + polygons.offsets[-1]])
+    own, others = _numbers_with_added(twins, polygons.added)
+    cell = polygons.polygon_cell
+    faces, barycentric = _on_whole(other[~on], mirror, progress)
+    corner_faces, corner_barycentric = corner_places(_whole_mesh(mirror, progress), vertices, corners, offsets)
+    return SurfacePolygons(
+        vertices=vertices,
+        corners=corners,
+        offsets=offsets,
+        polygon_cell=np.concatenate([own[cell], others[cell]]),
+        faces=np.concatenate([polygons.faces, faces]),
+        barycentric=np.concatenate([polygons.barycentric, barycentric]),
+        corner_faces=mirror.whole.of_mesh(corner_faces),
+        corner_barycentric=corner_barycentric,
+        missing=np.union1d(polygons.missing, twins[polygons.missing]),
+        added=2 * polygons.added,
+    )
+
+
+def _numbers_with_added(twins: Indices, added: int) -> tuple[Indices, Indices]:
+    """Numbers of the half's cells, those that were added last, and of their mirrors: added ones come after all."""
+    count, more = int(twins.max(initial=-1)) + 1, np.arange(added, dtype=np.int32)
+    own = np.concatenate([np.arange(len(twins), dtype=np.int32), count + more])
+    return own, np.concatenate([twins, count + added + more])
 
 
 def _on_whole(points: Reals, mirror: Mirror, progress: Progress) -> tuple[Indices, Reals]:
     """Where world places are on the whole surface: triangles of the Blender mesh (n,), weights (n, 3)."""
-    mesh = mesh_of_surface(mirror.whole, progress, cache_module.shared)
-    found = native.load().project(mesh, points)
+    found = native.load().project(_whole_mesh(mirror, progress), points)
     return mirror.whole.of_mesh(np.asarray(found.faces, np.int32)), np.asarray(found.barycentric)
+
+
+def _whole_mesh(mirror: Mirror, progress: Progress) -> Any:
+    return mesh_of_surface(mirror.whole, progress, cache_module.shared)
 
 
 def _shell(shell: LampShell, mirror: Mirror) -> LampShell:

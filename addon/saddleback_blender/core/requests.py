@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .disk_cache import DiskCache
 from .flowing_cells import FlowingCells
 from .live_cells import LiveCells
-from .results import Indices, Reals
+from .results import EdgeMarks, Indices, Reals
 from .settings import (
     BakeSettings,
     DirectionFieldSettings,
@@ -200,6 +200,7 @@ class TessellateRequest:
     density: Density | None = None
     sites: Points | None = None  # None: place `settings.count`
     marked_edges: Indices | None = None  # (n, 2) of the Blender mesh: some of the count stay on them
+    marks: EdgeMarks | None = None  # of the Blender mesh, for the dual mesh to inherit
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     live: LiveCells | None = None  # shown the cells while they are relaxed

@@ -27,15 +27,51 @@ class Figures:
 
 
 @dataclass(frozen=True)
+class EdgeMarks:
+    """Edges (m, 2) that are marked, and how."""
+
+    edges: Indices
+    sharp: NDArray[np.bool_]  # (m,)
+    seam: NDArray[np.bool_]  # (m,)
+    crease: Reals  # (m,) 0 to 1
+
+    def along(self, *edges: Indices) -> EdgeMarks:
+        """The same marks along one or several other lists of edges (m, 2), one after another."""
+        count = len(edges)
+        return EdgeMarks(
+            np.concatenate(edges), np.tile(self.sharp, count), np.tile(self.seam, count), np.tile(self.crease, count)
+        )
+
+
+@dataclass(frozen=True)
 class Dual:
-    """The triangulation of n sites: one vertex a cell, one edge where two cells meet, one triangle where three do."""
+    """The triangulation of n sites: one vertex a cell, one edge where two cells meet, one triangle where three do.
+
+    With quads there are more vertices, on the surface, too: after the sites those in the middles of edges and of
+    triangles.
+    """
 
     vertices: Reals  # (n, 3) on the surface
     triangles: Indices  # (t, 3) counter-clockwise; none twice, and no corner twice in one
     faces: Indices  # (n,) of the surface, where the vertices are
     barycentric: Reals  # (n, 3)
-    added: int  # so many vertices at the end are no sites of the cells, but put there to make the mesh whole
+    sites: int  # so many vertices are sites
+    added: int  # so many of them at the end are no sites of the cells, but put there to make the mesh whole
     issues: tuple[str, ...]  # where cells are too large to be triangulated, for a person to read
+    quads: Indices | None = None  # (q, 4) counter-clockwise, where they were wanted
+    marks: EdgeMarks | None = None  # of the edges of its faces, where any were marked
+    corner_faces: Indices | None = None  # (corners,) of the surface's triangles: on the side of the face of each corner
+    corner_barycentric: Reals | None = None  # (corners, 3)
+
+    @property
+    def polygons(self) -> Indices:
+        """(f, 3) or (f, 4): what is wanted."""
+        return self.triangles if self.quads is None else self.quads
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return _nbytes(self)
 
 
 @dataclass(frozen=True)
@@ -120,6 +156,7 @@ class CellsResult:
     edge_distance: Reals | None = None  # (V,) world units to the edge of the vertex's cell, inf = none; where wanted
     sites_tone: Reals | None = None  # (n,) 0 to 1, how dark the image is there, or how high the density; None = neither
     mesh: CellMesh | None = None  # where it was wanted
+    polygons: SurfacePolygons | None = None  # where they were wanted in place of the mesh
     dual: Dual | None = None  # where it was wanted
     shell: LampShell | None = None  # where it was wanted
     figures: Figures | None = None  # None where the sites have no triangle
@@ -145,6 +182,23 @@ class CellPolygons:
     corners: Indices
     offsets: Indices  # (p + 1,)
     polygon_cell: Indices  # (p,)
+
+
+@dataclass(frozen=True)
+class SurfacePolygons(CellPolygons):
+    """Cells on a surface, one polygon each; neighbors share corners and sides."""
+
+    faces: Indices  # (n,) of the surface's triangles, where the vertices are
+    barycentric: Reals  # (n, 3)
+    corner_faces: Indices  # (corners,) of the surface's triangles: on the side of the polygon of each corner
+    corner_barycentric: Reals  # (corners, 3)
+    missing: Indices  # cells that are no disks and have no polygon
+    added: int  # so many cells at the end were put there so that all are disks
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return _nbytes(self)
 
 
 @dataclass(frozen=True)

@@ -22,17 +22,18 @@ from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .lengths import RIB_SHARE
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Dual, LampShell, Reals
+from .results import CellsResult, DistanceResult, Dual, LampShell, Reals, SurfacePolygons
 from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
 from .solids.crossings import find_crossings
 from .solids.level_lines import LevelLines, isoline_levels, level_lines
 from .solids.rib_surface import rib_surface
 from .solids.shell_solid import thicken
-from .surfaces.duals import dual_of, figures_of
+from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
 from .surfaces.normals import normals_at
-from .surfaces.surface_places import compact_points, surface_points
+from .surfaces.polygons import polygons_of
+from .surfaces.surface_places import compact_points, on_whole_surface, surface_points
 
 
 def new_progress() -> Progress:
@@ -50,25 +51,23 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     settings, surface = request.settings, request.surface
     mesh, density, solved, key = solved_cells(request, progress, cache)
     result = _result(request, solved, density)
-    if settings.make_cells or settings.write_edge_distance:
+    has_mesh = settings.make_cells and not settings.makes_polygons
+    if has_mesh or settings.write_edge_distance:
         with progress.stage(0.98, "cutting the cells out"):
             split = cache.get(("split", *key), solved.cells.split, _split_bytes)
     if settings.write_edge_distance:
         with progress.stage(0.985, "measuring the way to the edges"):
             found = cache.get(("edge distance", *key), lambda: _edge_distance(surface, split), lambda a: a.nbytes)
         result = replace(result, edge_distance=surface.spread(found, np.inf))
-    if settings.make_cells:
+    if has_mesh:
         made = cells_of(mesh, split, shape_of(settings), key, progress, cache)
         result = replace(result, mesh=made)
-    policy = settings.dual_policy if settings.make_dual else "STRICT"
-
-    def triangulate() -> Dual:
-        return dual_of(solved.cells, policy, request.threads, progress)
-
-    dual = cache.get(("dual", *key, policy), triangulate, lambda made: 2 * made.vertices.nbytes)
+    if settings.makes_polygons:
+        result = replace(result, polygons=_polygons(request, mesh, solved, key, progress, cache))
+    dual = _dual(request, mesh, solved, key, progress, cache)
     result = replace(result, figures=figures_of(dual, solved.normalized_energy))
     if settings.make_dual:
-        result = replace(result, dual=replace(dual, faces=surface.of_mesh(dual.faces)))
+        result = replace(result, dual=on_whole_surface(dual, surface))
     if settings.make_shell:
         result = replace(result, shell=_shell(request, mesh, solved, key, progress, cache))
     progress.check()
@@ -204,7 +203,8 @@ def _annealing(request: TessellateRequest, iterations: int) -> int:
 
 def _closed_ball(request: TessellateRequest, iterations: int) -> bool:
     """Tells whether sites may be exchanged for the sake of the dual mesh: not those that are to stay where they are."""
-    return bool(iterations) and request.settings.make_dual and request.settings.keep_count
+    settings = request.settings
+    return bool(iterations) and (settings.make_dual or settings.makes_polygons) and settings.keep_count
 
 
 def _solve(
@@ -324,6 +324,39 @@ def _tone(surface: Surface, sites: Any, density: Reals) -> Reals:
     corners = density[surface.triangles[sites.faces]]
     tone: Reals = np.einsum("ni,ni->n", sites.barycentric, corners) / max(float(density.max(initial=0.0)), 1e-300)
     return tone
+
+
+def _polygons(
+    request: TessellateRequest, mesh: Any, solved: Solved, key: tuple[str, ...], progress: Progress, cache: Cache
+) -> SurfacePolygons:
+    policy = request.settings.dual_policy
+
+    def build() -> SurfacePolygons:
+        return polygons_of(mesh, solved.cells, policy, request.threads, progress)
+
+    found = cache.get(("polygons", *key, policy), build, lambda made: made.nbytes)
+    return on_whole_surface(found, request.surface)
+
+
+def _dual(
+    request: TessellateRequest, mesh: Any, solved: Solved, key: tuple[str, ...], progress: Progress, cache: Cache
+) -> Dual:
+    """The dual mesh that is wanted, or what figures are told of."""
+    settings, surface, marks = request.settings, request.surface, request.marks
+    policy = settings.dual_policy if settings.make_dual else "STRICT"
+    has_quads = settings.dual_faces == "QUADS"
+
+    def build() -> Dual:
+        made = dual_of(solved.cells, policy, request.threads, progress)
+        if not settings.make_dual:
+            return made.dual
+        lines = feature_lines(surface, mesh, settings, request.marked_edges) if has_quads else None
+        return finished(made, mesh, surface, marks, lines)
+
+    extra: tuple[object, ...] = (has_quads, *_held(request)) if settings.make_dual else ()
+    if settings.make_dual and marks is not None:
+        extra = (*extra, marks.edges, marks.sharp, marks.seam, marks.crease)
+    return cache.get(("dual", *key, policy, digest(*extra)), build, lambda made: 2 * made.nbytes)
 
 
 def _shell(

@@ -60,7 +60,7 @@ class TessellateSettings(DensitySettings, PatternSettings):
     # Lines on which some sites of COUNT stay:
     hold_sharp: bool = False  # edges at which the surface bends by more than the angle
     sharp_angle: float = math.radians(40.0)
-    hold_marked: bool = False  # edges that are marked sharp
+    hold_marked: bool = False  # edges that are marked sharp or as seams, or creased
     hold_boundary: bool = False
     quality: str = "NORMAL"  # FAST, NORMAL, FINE
     k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality
@@ -81,12 +81,14 @@ class TessellateSettings(DensitySettings, PatternSettings):
     dome: float = 0.0  # 0: a plateau; 1: round from the rim to the middle
     underside: bool = False
     local_uv: bool = False
+    cell_faces: str = "SURFACE"  # SURFACE = as many as the surface has, ONE = a polygon for each cell
     make_centers: bool = False
     instance_object: str = ""
     instance_dots: bool = False  # a dot on each center, where no object is chosen
     instance_size: str = "CELL"  # EQUAL, CELL, TONE = by the darkness of the image, or by the density
     instance_scale: float = 1.0
     make_dual: bool = False
+    dual_faces: str = "TRIANGLES"  # TRIANGLES, QUADS
     dual_policy: str = "REPAIR"  # REPAIR, STRICT
     keep_count: bool = True  # of vertices of the dual mesh: one for each cell wherever that can be
     make_shell: bool = False
@@ -100,6 +102,11 @@ class TessellateSettings(DensitySettings, PatternSettings):
     write_edge_distance: bool = False
     edge_distance_attribute: str = "saddleback_edge_distance"
     look: str = "NONE"  # whose colors and material what is made has
+
+    @property
+    def makes_polygons(self) -> bool:
+        """Tells whether cells become one polygon each."""
+        return self.make_cells and self.cell_faces == "ONE"
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,8 @@ def with_anchors(
         points.append((lines.vertices, None))
     if result.mesh is not None:
         points.append((result.mesh.vertices, result.mesh.feet))
+    if result.polygons is not None:
+        points.append((result.polygons.vertices, None))
     if result.dual is not None:
         points.append((result.dual.vertices, None))
     if result.shell is not None:

@@ -14,7 +14,7 @@ import numpy as np
 from .. import prefs
 from ..blocks import find
 from ..bridge.inputs.density import read_density
-from ..bridge.inputs.mesh_in import mesh_of, read_marked_edges
+from ..bridge.inputs.mesh_in import mesh_of, read_marks
 from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_sites
@@ -30,7 +30,15 @@ from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import mirrored_runs, runs
 from ..core.errors import BadInputError
-from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of, shell_of
+from ..core.figures import (
+    cell_faults_of,
+    faults_of,
+    lines_of,
+    lost_of,
+    polygon_faults_of,
+    shell_faults_of,
+    shell_of,
+)
 from ..core.flowing_cells import FlowingCells
 from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
@@ -66,12 +74,14 @@ def read_request(
     if settings.sites_source == "SIZE":
         settings = replace(settings, sites_source="COUNT", count=count_of_size(surface, settings.cell_size))
     sites = read_sites(context, source, mesh, settings)
+    marks = read_marks(mesh) if settings.hold_marked or settings.make_dual else None
     return TessellateRequest(
         surface=surface,
         settings=measured(settings, surface, settings.count if sites is None else len(sites)),
         density=read_density(source, mesh, settings),
         sites=sites,
-        marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
+        marked_edges=marks.edges if marks is not None and settings.hold_marked else None,
+        marks=marks,
         threads=prefs.threads(context),
         disk=prefs.disk_cache(context, settings.cache_on_disk),
     )
@@ -82,6 +92,7 @@ class CellsOperator(SurfaceOperator):
 
     settings_name = "tessellate"
     thickness: float
+    cell_faces: str
     flowing: FlowingCells | None = None  # cells to go on from
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
@@ -141,13 +152,14 @@ class CellsOperator(SurfaceOperator):
 
     def lying(self) -> dict[str, bool]:
         """Cells without a height do."""
-        return {CELLS_ROLE: not self._lengths.get("thickness", self.thickness)}
+        return {CELLS_ROLE: self.cell_faces == "ONE" or not self._lengths.get("thickness", self.thickness)}
 
     def notes(self, result: CellsResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
         cells = [] if result.mesh is None else cell_faults_of(result.mesh)
         dual = [] if result.dual is None else faults_of(result.dual)
-        return [*cells, *dual, *([] if result.shell is None else shell_faults_of(result.shell))]
+        polygons = [] if result.polygons is None else polygon_faults_of(result.polygons)
+        return [*cells, *polygons, *dual, *([] if result.shell is None else shell_faults_of(result.shell))]
 
     def figures(self, result: CellsResult) -> list[str]:
         """Returns how even the cells are."""
@@ -233,12 +245,17 @@ def _steps(result: CellsResult) -> str:
 
 
 def _added(result: CellsResult) -> str:
-    """Returns what the dual mesh needed: cells elsewhere, vertices beyond one a cell."""
-    if result.dual is None:
+    """Returns what the dual mesh and polygons needed: cells elsewhere, or more of them."""
+    if result.dual is None and result.polygons is None:
         return ""
     moved = "1 cell" if result.exchanged == 1 else f"{result.exchanged} cells"
-    exchanged = f", {moved} moved to where the dual mesh needs them" if result.exchanged else ""
-    return exchanged + (f", {result.dual.added} vertices added to the dual mesh" if result.dual.added else "")
+    what = "polygons need" if result.dual is None else "the dual mesh needs"
+    text = f", {moved} moved to where {what} them" if result.exchanged else ""
+    if result.polygons is not None and result.polygons.added:
+        text += f", {result.polygons.added} cells added so that all can be polygons"
+    if result.dual is not None and result.dual.added:
+        text += f", {result.dual.added} vertices added to the dual mesh"
+    return text
 
 
 def _lost(result: CellsResult) -> str:

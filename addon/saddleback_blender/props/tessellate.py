@@ -26,6 +26,18 @@ DUAL_POLICIES = (
     ("REPAIR", "Repair", "Add vertices where cells are too large, until the mesh has the surface's holes and handles"),
     ("STRICT", "Strict", "One vertex a cell; where cells are too large the mesh has faults, which are told"),
 )
+CELL_FACES = (
+    ("SURFACE", "Many", "As many as the surface has there, with a gap, a height and a bevel"),
+    ("ONE", "One", "One polygon for each cell, with the materials and layers of the surface: a mesh to go on with"),
+)
+DUAL_FACES = (
+    ("TRIANGLES", "Triangles", "One for each place where three cells meet"),
+    (
+        "QUADS",
+        "Quads",
+        "Each triangle cut into three quads, with all vertices on the surface; they follow no direction",
+    ),
+)
 EDGE_KINDS = (
     ("MESH", "Mesh", "A mesh of edges, made into tubes by a modifier"),
     ("CURVE", "Curve", "A curve object with a bevel"),
@@ -112,7 +124,11 @@ TESSELLATE: dict[str, Any] = {
         subtype="ANGLE",
         options={"SKIP_SAVE"},
     ),
-    "hold_marked": switch("Marked Edges", "Keep sites on edges that are marked sharp", False),
+    "hold_marked": switch(
+        "Marked Edges",
+        "Keep sites on edges that are marked sharp or as seams, or creased: a remesh has them, marked alike",
+        False,
+    ),
     "hold_boundary": switch("Border", "Keep sites on the border of an open mesh, so that a remesh has it", False),
     **DENSITY,
     "quality": quality(),
@@ -142,6 +158,7 @@ TESSELLATE: dict[str, Any] = {
     ),
     "underside": switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
     "local_uv": switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
+    "cell_faces": choice("Cell Faces", "How many faces a cell has", CELL_FACES, "SURFACE"),
     "make_centers": switch("Centers", "Make an object of points at the cells' centers", False),
     "instance_object": name_of("Instance", "The object to put on every center"),
     "instance_dots": switch("Dots", "Put a flat round dot on every center, where no object is chosen", False),
@@ -155,6 +172,7 @@ TESSELLATE: dict[str, Any] = {
         options={"SKIP_SAVE"},
     ),
     "make_dual": switch("Dual Mesh", "Make a triangle mesh with one vertex for each cell: a remesh", False),
+    "dual_faces": choice("Dual Faces", "What the dual mesh is made of", DUAL_FACES, "TRIANGLES"),
     "dual_policy": choice("Policy", "What to do where cells are too large for a mesh", DUAL_POLICIES, "REPAIR"),
     "keep_count": switch(
         "Keep Count",

@@ -126,6 +126,10 @@ def draw_edges(layout: bpy.types.UILayout, settings: Any) -> None:
 def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
     """The mesh of the cells."""
     layout.active = settings.make_cells
+    if hasattr(settings, "cell_faces"):  # cells of the plane have one anyway
+        layout.prop(settings, "cell_faces", text="Faces")
+        layout = layout.column()
+        layout.active = settings.cell_faces == "SURFACE"
     draw_length(layout, settings, "gap")
     draw_length(layout, settings, "thickness")
     column = layout.column()
@@ -153,6 +157,7 @@ def draw_centers(layout: bpy.types.UILayout, settings: Any) -> None:
 def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
     """The remesh."""
     layout.active = settings.make_dual
+    layout.prop(settings, "dual_faces", text="Faces")
     layout.prop(settings, "dual_policy", text="Policy")
     layout.prop(settings, "keep_count")
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A polygon for each cell, and the quads between cells and their dual: whole meshes with the surface's topology."""
 
 from __future__ import annotations

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from ... import compat
 from ...core.errors import BadInputError
 from ...core.requests import Surface
-from ...core.results import Indices, Reals
+from ...core.results import EdgeMarks, Indices, Reals
+from ...core.solids.mesh_edges import edge_keys
 from ...core.surfaces.parts import part_at_pinches
 from ...core.surfaces.seen_places import seen_from
 from .evaluated import evaluated
@@ -84,11 +85,32 @@ def read_triangle_polygons(mesh: bpy.types.Mesh) -> Indices:
     return compat.read_numbers(mesh.loop_triangles, "polygon_index")
 
 
-def read_marked_edges(mesh: bpy.types.Mesh) -> Indices:
-    """(n, 2) vertices of the edges that are marked sharp."""
-    is_sharp = np.empty(len(mesh.edges), np.bool_)
-    mesh.edges.foreach_get("use_edge_sharp", is_sharp)
-    return compat.read_edge_vertices(mesh)[is_sharp]
+def read_marks(mesh: bpy.types.Mesh) -> EdgeMarks:
+    """The edges that are marked sharp or as seams, or creased."""
+    sharp, seam = (np.empty(len(mesh.edges), np.bool_) for _ in range(2))
+    mesh.edges.foreach_get("use_edge_sharp", sharp)
+    mesh.edges.foreach_get("use_seam", seam)
+    crease = compat.read_creases(mesh).astype(np.float64)
+    marked = sharp | seam | (crease > 0.0)
+    return EdgeMarks(compat.read_edge_vertices(mesh)[marked], sharp[marked], seam[marked], crease[marked])
+
+
+def write_marks(mesh: bpy.types.Mesh, marks: EdgeMarks) -> None:
+    """Marks the edges between the vertices of a mesh that has its edges; those that it has not are left out."""
+    ends, count = compat.read_edge_vertices(mesh), len(mesh.vertices)
+    keys = edge_keys(ends[:, 0], ends[:, 1], count)
+    order = np.argsort(keys)
+    wanted = edge_keys(marks.edges[:, 0], marks.edges[:, 1], count)
+    place = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
+    there = keys[place] == wanted
+    for name, values in (("use_edge_sharp", marks.sharp), ("use_seam", marks.seam)):
+        written = np.zeros(len(keys), np.bool_)
+        written[place[there]] = values[there]
+        mesh.edges.foreach_set(name, written)
+    if (marks.crease > 0.0).any():
+        creases = np.zeros(len(keys), np.float32)
+        creases[place[there]] = marks.crease[there]
+        compat.write_creases(mesh, creases)
 
 
 def read_vertex_normals(mesh: bpy.types.Mesh) -> Reals:

@@ -15,8 +15,13 @@ from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.shapes.local_places import local_uv
 from ...core.solids.mesh_edges import triangle_edges
 from ...core.surfaces.cell_colors import cell_colors, linear_to_srgb, palette_colors
+from ...core.surfaces.polygons import neighbors_of
 from ...finishes import material_of, palette_of
 from ...looks import NO_LOOK, finish_of
+from ..inputs.carried_in import read_carried
+from ..inputs.materials_in import shown_materials
+from ..inputs.mesh_in import mesh_of
+from .carried_out import write_groups, write_layers
 from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
@@ -37,18 +42,12 @@ def write_cells(
     follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object."""
+    if result.polygons is not None and isinstance(settings, TessellateSettings):
+        return _write_surface_polygons(context, source, result, settings, follower)
     assert result.mesh is not None
     cells = result.mesh
     look = settings.look if isinstance(settings, TessellateSettings) else NO_LOOK
-    finish, count, neighbors = finish_of(look), result.count, result.edge_cells
-    if result.twin is not None:  # the first half of the edges is of the one side
-        count, neighbors = int(result.twin.max()) + 1, neighbors[: len(neighbors) // 2]
-    if finish is None:
-        colors = cell_colors(count, neighbors)
-    else:
-        colors = palette_colors(count, neighbors, palette_of(finish), finish.contrast)
-    if result.twin is not None:
-        colors = colors[result.twin]
+    colors = _colors(result, settings, result.edge_cells)
     place = level_place(source)
     is_smooth = compat.is_shaded_smooth(source.data) or (isinstance(settings, TessellateSettings) and settings.dome > 0)
     mesh = _mesh(to_place(place, cells.vertices), cells, colors, is_smooth)
@@ -85,6 +84,58 @@ def write_polygons(
     if follower is not None:
         follower.take(item, place, cells.vertices)
     return item
+
+
+def _write_surface_polygons(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings,
+    follower: Follower | None,
+) -> bpy.types.Object:
+    """Polygons with what the artist put on the surface: groups, maps, attributes, shading and, without a look, the
+    materials, where there are some.
+    """
+    cells = result.polygons
+    assert cells is not None
+    place, counts = level_place(source), np.diff(cells.offsets)
+    mesh = _new_mesh(to_place(place, cells.vertices))
+    compat.write_polygons(mesh, cells.corners, cells.offsets)
+    mesh.update(calc_edges=True)
+    with mesh_of(context, source, settings.use_modifiers) as read:
+        carried = read_carried(source, read, cells.faces, cells.barycentric)
+        corners = read_carried(source, read, cells.corner_faces, cells.corner_barycentric, has_corners=True)
+        compat.copy_auto_smooth(read, mesh)
+        materials = shown_materials(source, read) if finish_of(settings.look) is None else []
+    write_layers(mesh, carried, corners, counts)
+    if not any(materials):
+        compat.write_numbers(mesh.polygons, "material_index", np.zeros(len(counts), np.int32))
+        materials = [material_of(settings.look, nodes.cells_material)]
+    for material in materials:
+        mesh.materials.append(material)
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.polygon_cell)
+    neighbors = neighbors_of(cells.corners, cells.offsets, cells.polygon_cell)
+    _write_colors(mesh, _colors(result, settings, neighbors), np.repeat(cells.polygon_cell, counts))
+    item = replace_object(context, source, CELLS_ROLE, mesh, place)
+    write_groups(item, carried)
+    if follower is not None:
+        follower.take(item, place, cells.vertices)
+    return item
+
+
+def _colors(result: CellsResult, settings: TessellateSettings | Voronoi2dSettings, neighbors: Indices) -> np.ndarray:
+    """A color for each cell, also for those that were added; the same on both sides of a mirror."""
+    added = 0 if result.polygons is None else result.polygons.added
+    twin = None if result.twin is None else np.append(result.twin, np.arange(result.count, result.count + added))
+    count = result.count + added
+    if twin is not None:
+        neighbors = np.sort(twin[neighbors], axis=1)
+    finish = finish_of(settings.look) if isinstance(settings, TessellateSettings) else None
+    if finish is None:
+        colors = cell_colors(count, neighbors)
+    else:
+        colors = palette_colors(count, neighbors, palette_of(finish), finish.contrast)
+    return colors if twin is None else colors[twin]
 
 
 def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:

@@ -10,12 +10,11 @@ from ... import compat
 from ...core.results import CellsResult, Dual
 from ...core.settings import TessellateSettings
 from ...looks import NO_LOOK
-from ..inputs.carried_in import Carried, read_carried
+from ..inputs.carried_in import read_carried
 from ..inputs.materials_in import shown_materials
-from ..inputs.mesh_in import from_world, mesh_of
-from .carried_out import write_groups
+from ..inputs.mesh_in import from_world, mesh_of, write_marks
+from .carried_out import in_written_order, write_groups, write_layers
 from .following import Follower
-from .out_attributes import set_attribute
 from .out_collection import replace_object
 
 DUAL_ROLE = "dual"
@@ -31,17 +30,20 @@ def write_dual(
     """Makes or replaces the source's dual object, in the source's own space.
 
     Vertex groups, UV maps and number attributes come along, each vertex with the values of the place where it lies;
-    faces are smooth, and have the material, as at their first vertex. A face across a seam of a UV map is stretched
-    over the map, since its vertices lie on both sides.
+    faces are smooth, and have the material, as at their first vertex. Corners have the UV places on the side of their
+    face: only a face that lies across a seam is stretched over the map.
     """
     assert result.dual is not None
     dual = result.dual
+    assert dual.corner_faces is not None and dual.corner_barycentric is not None
     with mesh_of(context, source, settings.use_modifiers) as read:
         carried = read_carried(source, read, dual.faces, dual.barycentric)
+        corners = read_carried(source, read, dual.corner_faces, dual.corner_barycentric, has_corners=True)
         mesh = _mesh(source, dual)
         compat.copy_auto_smooth(read, mesh)
         materials = shown_materials(source, read)
-    _write_layers(mesh, carried)
+    counts = np.full(len(dual.polygons), dual.polygons.shape[1])
+    write_layers(mesh, carried, in_written_order(corners, counts, source.matrix_world.determinant() < 0), counts)
     for material in materials:
         mesh.materials.append(material)
     item = replace_object(context, source, DUAL_ROLE, mesh)
@@ -58,19 +60,10 @@ def _mesh(source: bpy.types.Object, dual: Dual) -> bpy.types.Mesh:
     mesh.vertices.add(len(dual.vertices))
     compat.write_positions(mesh, from_world(source, dual.vertices).astype(np.float32))
     is_mirrored = source.matrix_world.determinant() < 0
-    compat.write_corners(mesh, dual.triangles[:, ::-1] if is_mirrored else dual.triangles)
+    polygons = dual.polygons[:, ::-1] if is_mirrored else dual.polygons
+    count, sides = polygons.shape
+    compat.write_polygons(mesh, polygons.ravel(), np.arange(0, sides * count + 1, sides, dtype=np.int32))
     mesh.update(calc_edges=True)
+    if dual.marks is not None:
+        write_marks(mesh, dual.marks)
     return mesh
-
-
-def _write_layers(mesh: bpy.types.Mesh, carried: Carried) -> None:
-    for name, values in carried.attributes.items():
-        set_attribute(mesh, name, "POINT", values)
-    corners = compat.read_corner_vertices(mesh)
-    for name, places in carried.uv_maps.items():
-        layer = mesh.uv_layers.new(name=name)
-        if layer is not None:  # Blender holds eight maps at most
-            layer.data.foreach_set("uv", np.ascontiguousarray(places[corners]).ravel())
-    first = corners[::3]
-    mesh.polygons.foreach_set("use_smooth", carried.smooth[first])
-    compat.write_numbers(mesh.polygons, "material_index", carried.material[first])

@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from .. import native
 from ..errors import BadInputError
 from ..requests import Points, Surface
+from ..results import Dual, SurfacePolygons
+
+Placed = TypeVar("Placed", Dual, SurfacePolygons)
 
 
 def compact_points(surface: Surface, points: Points, what: str) -> Points:
@@ -27,3 +31,9 @@ def compact_points(surface: Surface, points: Points, what: str) -> Points:
 def surface_points(mesh: Any, points: Points) -> Any:
     """Vertex numbers as they are; places in the world -> the nearest points of the surface."""
     return points if points.ndim == 1 else native.load().project(mesh, points)
+
+
+def on_whole_surface(made: Placed, surface: Surface) -> Placed:
+    """The same with triangles numbered as in the Blender mesh, of which the surface may be a part."""
+    corners = None if made.corner_faces is None else surface.of_mesh(made.corner_faces)
+    return replace(made, faces=surface.of_mesh(made.faces), corner_faces=corners)
