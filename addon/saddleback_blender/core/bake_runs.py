@@ -79,12 +79,18 @@ def bake(request: BakeRequest, progress: Progress, cache: Cache | None = None) -
     _check_cells(request, solved.cells)
     _check_numbers(request, len(solved.cells.areas))
     baker = _Baker(request, solved, progress)
-    folder = Path(tempfile.mkdtemp(prefix="saddleback-"))
     try:
-        result = _into(folder, request, solved.cells, baker, progress)
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
+        folder = Path(tempfile.mkdtemp(prefix="saddleback-"))
+        try:
+            result = _into(folder, request, solved.cells, baker, progress)
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+    except OSError as error:
+        raise BadInputError(
+            f"'{request.cells.surface.name}': the maps cannot be written to the system's folder for temporary files "
+            f"on their way: {error.strerror}; make room there, or bake fewer or smaller maps"
+        ) from error
     weakref.finalize(result, shutil.rmtree, folder, ignore_errors=True)
     return result
 

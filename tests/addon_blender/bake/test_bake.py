@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cells as images: what pixels say, depths, tiles, files, and what is refused."""
 
+import re
+import tempfile
+
 import bpy
 import numpy as np
 import pytest
@@ -346,6 +349,36 @@ def test_a_failing_write_leaves_the_file_as_it_was(monkeypatch, tmp_path):
     refused("cannot be saved: No space left on device", resolution=64, folder=str(tmp_path))
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == kept
     assert images()["Plate Height"].shape[0] == 32
+
+
+def test_a_folder_for_temporary_files_that_takes_none(monkeypatch, tmp_path):
+    tessellated()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "none"))
+    refused("temporary files on their way: .*; make room")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    resource = pytest.importorskip("resource", reason="POSIX alone limits the size of files")
+    most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50, most[1]))
+    try:
+        refused("temporary files on their way: File too large; make room")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, most)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_cannot_be_replaced_leaves_all_as_they_were(tmp_path):
+    tessellated()
+    bpy.ops.saddleback.bake(resolution=32, folder=str(tmp_path))
+    in_the_way = max(tmp_path.iterdir())
+    in_the_way.unlink()
+    in_the_way.mkdir()
+    kept = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path != in_the_way}
+    assert kept
+    refused(f"'{re.escape(str(in_the_way))}' cannot be saved", resolution=64, folder=str(tmp_path))
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path != in_the_way} == kept
+    in_the_way.rmdir()
+    assert bpy.ops.saddleback.bake(resolution=64, folder=str(tmp_path)) == {"FINISHED"}
+    assert {path.name for path in tmp_path.iterdir()} == {in_the_way.name, *kept}
 
 
 @pytest.mark.parametrize("channels", [1, 3])

@@ -70,14 +70,23 @@ def _file_name(name: str, image: BakedImage, tile: int) -> str:
 
 
 def _copy(source: bpy.types.Object, path: Path, wanted: Path) -> None:
-    """Copies a file beside where it is to be, and moves it there once nothing can fail any more."""
-    part = wanted.with_name(f".{wanted.name}.part")
-    rollback.undo_with(partial(part.unlink, missing_ok=True))
+    """Puts a file where it is to be. Windows refuses where another program holds what is there, so what may still fail
+    comes first: a copy of what was there is moved back where anything fails later.
+    """
+    part, former = (wanted.with_name(f".{wanted.name}.{end}") for end in ("part", "former"))
+    for extra in (part, former):
+        rollback.undo_with(partial(extra.unlink, missing_ok=True))
+    put_back = partial(wanted.unlink, missing_ok=True)
     try:
+        if wanted.exists():
+            shutil.copyfile(wanted, former)
+            put_back = partial(os.replace, former, wanted)
         shutil.copyfile(path, part)
+        os.replace(part, wanted)
     except OSError as error:
         raise BadInputError(f"'{source.name}': '{wanted}' cannot be saved: {error.strerror}") from error
-    rollback.when_written(partial(os.replace, part, wanted))
+    rollback.undo_with(put_back)
+    rollback.when_written(partial(former.unlink, missing_ok=True))
 
 
 def _loaded(name: str, image: BakedImage, files: dict[int, Path]) -> bpy.types.Image:
