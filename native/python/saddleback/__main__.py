@@ -1,0 +1,5 @@
+"""``python -m saddleback``: the command line."""
+
+from saddleback.command_line import main
+
+main()
