@@ -23,6 +23,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -122,6 +123,16 @@ class Inputs:
         return sb.SurfaceCurve(self.mesh, self.graph.path(0, self.count // 2).surface)
 
     @functools.cached_property
+    def curve_points(self) -> Any:
+        return self.curve.points.positions(self.mesh)
+
+    @functools.cached_property
+    def poly_data(self) -> Any:
+        """What a PolyData has."""
+        faces = np.column_stack([np.full(len(self.triangles), 3), self.triangles]).ravel()
+        return SimpleNamespace(points=self.vertices, faces=faces, is_all_triangles=True)
+
+    @functools.cached_property
     def exact(self) -> sb.ExactField:
         return sb.ExactField(self.mesh, [0])
 
@@ -162,6 +173,13 @@ class Inputs:
 
     def sweeps(self) -> sb.SweepCircles:
         return sb.SweepCircles(self.sites[:3000], self.centers)
+
+
+def if_installed(call: Call) -> object:
+    """What a call gives that needs a package of others, or nothing without it."""
+    with contextlib.suppress(ImportError):
+        return call()
+    return None
 
 
 def grown(sweep: Any) -> Any:
@@ -226,6 +244,14 @@ def calls(at: Inputs) -> dict[str, Call]:
         "MappedShapes.attributes": lambda **more: at.laid.mapped.attributes(0.1, **more),
         "MappedShapes.frames": lambda: at.laid.mapped.frames(),
         "Mesh": lambda: sb.Mesh(at.vertices, at.triangles),
+        "Mesh.from_meshio": lambda: sb.Mesh.from_meshio(at.mesh.to_meshio()),
+        "Mesh.from_open3d": lambda: sb.Mesh.from_open3d(at.mesh),
+        "Mesh.from_pyvista": lambda: sb.Mesh.from_pyvista(at.poly_data),
+        "Mesh.from_trimesh": lambda: sb.Mesh.from_trimesh(at.mesh.to_trimesh()),
+        "Mesh.to_meshio": lambda: at.mesh.to_meshio({"x": at.vertices[:, 0]}),
+        "Mesh.to_open3d": lambda: if_installed(at.mesh.to_open3d),
+        "Mesh.to_pyvista": lambda: if_installed(at.mesh.to_pyvista),
+        "Mesh.to_trimesh": lambda: at.mesh.to_trimesh({"x": at.vertices[:, 0]}),
         "Placements": lambda: sb.Placements([0], inner, [0.0], [1.0]),
         "RelaxationWatch": sb.RelaxationWatch,
         "RelaxationWatch.latest": lambda: sb.RelaxationWatch().latest(),
@@ -301,6 +327,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "hausdorff_distance": lambda **more: sb.hausdorff_distance(at.mesh, grid, 1e-3, **more),
         "limit_device_memory": lambda: sb.limit_device_memory(0),
         "map_shapes": lambda **more: sb.map_shapes(at.mesh, at.star, at.laid.placements, **more),
+        "plot": lambda: if_installed(lambda: sb.plot(quality)),
         "polar_coordinates": lambda: sb.polar_coordinates(at.graph, at.curve, 0.5),
         "principal_curvatures": lambda: sb.principal_curvatures(at.mesh),
         "progress_bar": lambda: contextlib.ExitStack().enter_context(sb.progress_bar(io.StringIO())),
@@ -321,6 +348,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         ),
         "sample": lambda: sb.sample(at.mesh, 20_000),
         "self_crossings": lambda **more: sb.self_crossings(at.vertices, at.triangles, **more),
+        "show": lambda: if_installed(lambda: sb.show(at.mesh, is_shown=False)),
         "spread_values": lambda: sb.spread_values(at.mesh, at.few, at.few.astype(float)),
         "streamline": lambda: sb.streamline(at.mesh, at.field, 3, 20.0),
         "trace": lambda: sb.trace(at.mesh, 0, 0.3, 200.0),
@@ -329,6 +357,8 @@ def calls(at: Inputs) -> dict[str, Call]:
         "vertex_normals": lambda: sb.vertex_normals(at.vertices, at.triangles),
         "voronoi_2d": lambda **more: sb.voronoi_2d(at.sites, **more),
         "voronoi_2d_on_device": lambda: sb.voronoi_2d_on_device(at.sites),
+        "write_curves": lambda: sb.write_curves(at.folder / f"{os.getpid()}.obj", [at.curve_points]),
+        "write_mesh": lambda: sb.write_mesh(at.folder / f"{os.getpid()}.ply", at.mesh, {"x": at.vertices[:, 0]}),
         "write_placements": lambda: sb.write_placements(
             at.folder / f"{os.getpid()}.json", at.mesh, [at.star], at.laid.placements
         ),

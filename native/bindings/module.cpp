@@ -31,6 +31,7 @@ void bind_repair(py::module_& m);
 void bind_safe_distance(py::module_& m);
 void bind_shape_maps(py::module_& m);
 void bind_shapes(py::module_& m);
+void bind_states(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
@@ -105,6 +106,25 @@ PyObject* refuse_to_make(PyTypeObject* type, PyObject*, PyObject*) {
   return PyErr_Format(PyExc_TypeError, "a %s is made by the calls that return one", type->tp_name);
 }
 
+/// Returns what to do instead with an object that stays where it was made.
+std::string_view instead_of_copying(const std::string& type) {
+  constexpr std::pair<std::string_view, std::string_view> k_advice[] = {
+      {"Job", "it belongs to the calls that it was given to; make another one there"},
+      {"ExactField", "send its mesh and sources, and make it again there"},
+      {"SafeDistanceTable", "send its two shapes, and make it again there"},
+      {"SweepCircle", "it is still going on; send its sites and center, and grow another one to the same radius"},
+      {"SweepCircles", "they are still going on; send their sites and centers, and grow others to the same radius"},
+      {"DirectionFieldEditor", "send its mesh, and make another one there"},
+      {"CellCache", "it is for calls in this process; make an empty one there"},
+      {"RelaxationWatch", "it is for calls in this process; make another one there"},
+      {"DeviceArray", "it lies in a device's memory; send what numpy() gives"},
+      {"DeviceVoronoi2d", "it lies in a device's memory; send what numpy() of its arrays gives"},
+  };
+  for (const auto& [name, advice] : k_advice)
+    if (name == type) return advice;
+  return "send what it was made from, and make it again there";
+}
+
 // An object that C++ never made holds whatever was in its memory before. The oldest pickle protocols and Class.__new__
 // would make such objects: they are refused, by classes that nobody constructs altogether.
 void refuse_empty_objects(const py::module_& m) {
@@ -113,10 +133,10 @@ void refuse_empty_objects(const py::module_& m) {
     const py::object own = value.attr("__dict__");
     const bool is_constructed = own.contains("__init__") && PyInstanceMethod_Check(py::object(own["__init__"]).ptr());
     if (!is_constructed) reinterpret_cast<PyTypeObject*>(value.ptr())->tp_new = refuse_to_make;
-    if (own.contains("__reduce__") || own.contains("__getstate__")) continue;
+    if (own.contains("__reduce__") || own.contains("_state")) continue;
     const auto refuse = [](const py::object& self) -> py::object {
-      throw py::type_error(
-          message("cannot pickle or copy a saddleback.", py::cast<std::string>(py::type::of(self).attr("__name__"))));
+      const auto type = py::cast<std::string>(py::type::of(self).attr("__name__"));
+      throw py::type_error(message("cannot pickle or copy a saddleback.", type, ": ", instead_of_copying(type)));
     };
     py::setattr(value, "__reduce__", py::cpp_function(refuse, py::is_method(value), py::name("__reduce__")));
   }
@@ -161,5 +181,6 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_shape_maps(m);
   bind_check(m);
   bind_distribution(m);
+  bind_states(m);
   refuse_empty_objects(m);
 }

@@ -3,11 +3,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import gzip
 import json
+import struct
+import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -202,3 +207,150 @@ def check_placement_files(rng: np.random.Generator) -> None:
         except sb.InputError as error:
             assert str(error).startswith(f"{path}: "), str(error)
             assert "\n" not in str(error), str(error)
+
+
+def read_plain_ply(contents: bytes) -> dict[str, list[list[float | list[int]]]]:
+    """The rows of each element of a binary file whose lists are counted by a byte, value by value."""
+    head, _, rest = contents.partition(b"end_header\n")
+    codes = {
+        "int8": "b",
+        "uchar": "B",
+        "int16": "h",
+        "uint16": "H",
+        "int": "i",
+        "uint": "I",
+        "float": "f",
+        "double": "d",
+    }
+    elements: list[tuple[str, int, list[list[str]]]] = []
+    for line in head.decode().splitlines():
+        key, *words = line.split()
+        if key == "element":
+            elements.append((words[0], int(words[1]), []))
+        elif key == "property":
+            elements[-1][2].append(words)
+    at = 0
+
+    def take(code: str) -> Any:
+        nonlocal at
+        at += struct.calcsize("<" + code)
+        return struct.unpack_from("<" + code, rest, at - struct.calcsize("<" + code))[0]
+
+    found = {}
+    for name, count, kinds in elements:
+        found[name] = [
+            [
+                [take(codes[words[2]]) for _ in range(take(codes[words[1]]))]
+                if words[0] == "list"
+                else take(codes[words[0]])
+                for words in kinds
+            ]
+            for _ in range(count)
+        ]
+    assert at == len(rest)
+    return found
+
+
+@guards("write_mesh", "write_curves", "read_mesh")
+def check_written_meshes(mesh: sb.Mesh, rng: np.random.Generator) -> None:
+    """Written meshes and curves against readers of the plainest forms, and what we read of them, to the bit."""
+    scale = 10.0 ** rng.integers(-9, 9)
+    mesh = sb.Mesh(mesh.vertices * scale, mesh.triangles)
+    kinds = ("f4", "f8", "i1", "u1", "i2", "u2", "i4", "u4")
+    values = (rng.normal(size=mesh.vertex_count) * 100).astype(np.int64).astype(kinds[rng.integers(len(kinds))])
+    cell, curve = rng.integers(0, 9, mesh.face_count), rng.normal(size=(int(rng.integers(2, 9)), 3))
+    compressed = ".gz" if rng.random() < 0.3 else ""
+    with tempfile.TemporaryDirectory() as folder:
+        ply, obj = (Path(folder) / f"mesh.{kind}{compressed}" for kind in ("ply", "obj"))
+        sb.write_mesh(ply, mesh, {"value": values}, face_attributes={"cell": cell})
+        sb.write_mesh(obj, mesh, face_attributes={"cell": cell} if rng.random() < 0.5 else {})
+        sb.write_curves(Path(folder) / "curves.ply", [curve, curve[:1], curve])
+        open_ = gzip.open if compressed else open
+        rows, lines = open_(ply, "rb").read(), open_(obj, "rb").read().decode()
+        curves = read_plain_ply((Path(folder) / "curves.ply").read_bytes())
+        for path in (ply, obj):
+            again = sb.read_mesh(path)
+            assert again.vertices.tobytes() == mesh.vertices.tobytes()
+            assert again.triangles.tobytes() == mesh.triangles.tobytes()
+    read = read_plain_ply(rows)
+    assert read["vertex"] == [[*xyz, value] for xyz, value in zip(mesh.vertices.tolist(), values.tolist(), strict=True)]
+    assert read["face"] == [[t, c] for t, c in zip(mesh.triangles.tolist(), cell.tolist(), strict=True)]
+    vertices, polygons = read_plain_obj("\n".join(line for line in lines.splitlines() if not line.startswith("g ")))
+    assert (vertices, polygons) == (mesh.vertices.tolist(), mesh.triangles.tolist())
+    assert curves["vertex"] == [*curve.tolist(), *curve.tolist()]
+    n = len(curve)
+    assert curves["edge"] == [[i, i + 1] for i in range(2 * n - 1) if i != n - 1]
+
+
+@contextlib.contextmanager
+def stand_ins() -> Iterator[dict[str, Any]]:
+    """What takes the place of packages that are too large to have, and keeps what it is handed."""
+
+    class PolyData(SimpleNamespace):
+        def __init__(self, points: Any, **more: Any) -> None:
+            super().__init__(points=points, **more)
+
+        @classmethod
+        def from_regular_faces(cls, points: Any, faces: Any) -> PolyData:
+            flat = np.column_stack([np.full(len(faces), 3), faces]).ravel()
+            return cls(points=points, faces=flat, is_all_triangles=True, point_data={}, cell_data={})
+
+    class Plotter(list):  # type: ignore[type-arg]
+        def __init__(self, off_screen: bool) -> None:
+            assert off_screen
+
+        def add_mesh(self, mesh: Any, name: str, **_: Any) -> None:
+            self.append((name, mesh))
+
+    class TriangleMesh(SimpleNamespace):
+        def __init__(self, vertices: Any, triangles: Any) -> None:
+            super().__init__(vertices=vertices, triangles=triangles)
+
+    vectors = SimpleNamespace(Vector3dVector=np.array, Vector3iVector=np.array)
+    packages = {
+        "pyvista": SimpleNamespace(PolyData=PolyData, Plotter=Plotter),
+        "open3d": SimpleNamespace(utility=vectors, geometry=SimpleNamespace(TriangleMesh=TriangleMesh)),
+    }
+    before = {name: sys.modules.get(name) for name in packages}
+    sys.modules.update(packages)  # type: ignore[arg-type]
+    try:
+        yield packages
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
+
+
+@guards("show", "plot")
+def check_pictures(mesh: sb.Mesh, rng: np.random.Generator) -> None:
+    """A scene has the mesh with its values, and the edges of cells; a plot the energies."""
+    graph, values = sb.SaddleVertexGraph(mesh, threads=1), rng.normal(size=mesh.vertex_count)
+    count = mesh.component_count + 2
+    even = sb.centroidal_voronoi(graph, count=count, max_iterations=3, seed=1)
+    with stand_ins():
+        scene = dict(sb.show(even, mesh=mesh, attributes={"value": values}, is_shown=False))
+    assert scene["mesh"].points.tobytes() == mesh.vertices.tobytes()
+    assert (scene["mesh"].point_data["value"] == values).all()
+    assert (scene["cells"].cell_data["cell"] == even.cells.split().triangle_cell).all()
+    drawn: dict[str, Any] = {}
+    axes = SimpleNamespace(plot=lambda y, **_: drawn.update(energy=y), set=lambda **_: None)
+    assert sb.plot(even, axes) is axes
+    assert (drawn["energy"] == even.energy).all()
+
+
+@guards(*(f"Mesh.{way}_{name}" for way in ("from", "to") for name in ("trimesh", "meshio", "pyvista", "open3d")))
+def check_other_packages(mesh: sb.Mesh, rng: np.random.Generator) -> None:
+    """Meshes come back from what other packages make of them, or from what has what theirs have, to the bit."""
+    values = rng.normal(size=mesh.vertex_count)
+    there, elsewhere = mesh.to_trimesh({"value": values}), mesh.to_meshio({"value": values})
+    assert (there.vertex_attributes["value"] == values).all()
+    assert (elsewhere.point_data["value"] == values).all()
+    with stand_ins():
+        data = mesh.to_pyvista({"value": values})
+        assert (data.point_data["value"] == values).all()
+        again = [sb.Mesh.from_pyvista(data), sb.Mesh.from_open3d(mesh.to_open3d())]
+    for one in (*again, sb.Mesh.from_trimesh(there), sb.Mesh.from_meshio(elsewhere)):
+        assert one.vertices.tobytes() == mesh.vertices.tobytes()
+        assert one.triangles.tobytes() == mesh.triangles.tobytes()

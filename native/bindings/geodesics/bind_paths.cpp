@@ -7,6 +7,7 @@
 #include "saddleback/mesh/surface_curve.h"
 
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -325,6 +326,12 @@ py::list feature_curves_of(const py::object& mesh_object, const py::object& angl
   return result;
 }
 
+py::tuple save_curve(const py::object& self) {
+  const auto& curve = py::cast<const SurfaceCurve&>(self);
+  const py::object mesh = py::cast(curve.mesh(), py::return_value_policy::reference);  // the object that it keeps alive
+  return py::make_tuple(mesh, curve.points(), curve.closed());
+}
+
 void bind_curve(py::module_& m) {
   py::class_<SurfaceCurve>(m, "SurfaceCurve", py::module_local(), k_curve_doc)
       .def(py::init(&make_curve), py::arg("mesh"), py::arg("points"), py::arg("closed") = false, py::keep_alive<1, 2>())
@@ -341,6 +348,8 @@ void bind_curve(py::module_& m) {
   m.def("feature_curves", &feature_curves_of, py::arg("mesh"), py::arg("angle") = defaults.angle, py::kw_only(),
         py::arg("boundary") = defaults.boundary, py::arg("edges") = py::none(),
         py::arg("corner_angle") = defaults.corner_angle, k_feature_doc);
+  let_travel<SurfaceCurve>(m, "SurfaceCurve", &save_curve,
+                           [](const py::tuple& state) { return py::type::of<SurfaceCurve>()(*as_state(state, 3)); });
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include "saddleback/mesh/hausdorff_distance.h"
 
+#include "convert/fields.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -11,6 +13,7 @@ struct Hausdorff {
   FarthestPoint of_first, of_second;
   double distance() const { return std::max(of_first.distance, of_second.distance); }
 };
+auto fields_of(Hausdorff& of) { return std::tie(of.of_first, of.of_second); }
 
 Hausdorff measure(const py::object& first, const py::object& second, const py::object& tolerance,
                   const py::object& threads, const py::object& job) {
@@ -79,6 +82,7 @@ void bind_hausdorff_distance(py::module_& m) {
       });
   m.def("hausdorff_distance", &measure, py::arg("first"), py::arg("second"), py::arg("tolerance") = 1e-4, py::kw_only(),
         py::arg("threads") = 0, py::arg("job") = py::none(), k_doc);
+  let_travel<Hausdorff>(m, "HausdorffDistance");
 }
 
 }  // namespace saddleback::bindings

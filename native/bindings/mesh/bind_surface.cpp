@@ -7,6 +7,7 @@
 #include "saddleback/mesh/trace.h"
 
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -76,6 +77,9 @@ struct TracedPath : GeodesicPath {
   Vec3 end_direction = Vec3::Zero();
   bool hit_boundary = false;
 };
+auto fields_of(TracedPath& of) {
+  return std::tie(of.points, of.surface, of.length, of.end_angle, of.end_direction, of.hit_boundary);
+}
 
 SurfacePoints make_points(const py::object& faces, const py::object& barycentric) {
   const ArrayIn<Index> face = as_indices(faces, "faces");
@@ -230,6 +234,7 @@ void bind_paths(py::module_& m) {
 void bind_surface(py::module_& m) {
   bind_points(m);
   bind_paths(m);
+  let_travel<TracedPath>(m, "TracedPath");
 }
 
 }  // namespace saddleback::bindings

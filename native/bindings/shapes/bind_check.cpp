@@ -2,8 +2,10 @@
 
 #include "saddleback/distribution/check_distribution.h"
 
+#include "convert/fields.h"
 #include "convert/mapped_shapes.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -60,6 +62,7 @@ struct Checked {
   CheckReport report;
   std::vector<Vec3> places;
 };
+auto fields_of(Checked& of) { return std::tie(of.report, of.places); }
 
 Checked check_mapped(const py::object& mesh_object, const MappedShapes& mapped, const CheckOptions& options) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
@@ -158,6 +161,7 @@ void bind_check(py::module_& m) {
   m.def("check_distribution", &check_result, py::arg("mesh"), py::arg("result"), py::kw_only(),
         py::arg("samples") = 1'000'000, py::arg("seed") = 0, py::arg("threads") = 0, py::arg("job") = py::none(),
         k_check_doc);
+  let_travel<Checked>(m, "CheckReport");
 }
 
 }  // namespace saddleback::bindings

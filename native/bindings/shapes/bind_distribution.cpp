@@ -5,8 +5,10 @@
 #include "saddleback/distribution/distribution.h"
 #include "saddleback/geodesics/saddle_vertex_graph.h"
 
+#include "convert/fields.h"
 #include "convert/mapped_shapes.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -160,6 +162,22 @@ py::list shapes_of(const Distribution& self) {
 
 /// Returns the mapped shapes, made when first asked for: the outlines that were tested take much more memory than the
 /// placements.
+py::tuple save_distribution(const py::object& self) {
+  const auto& laid = py::cast<const Distribution&>(self);
+  return py::make_tuple(laid.mesh, laid.field, shapes_of(laid), state_of(laid.result));
+}
+
+std::unique_ptr<Distribution> load_distribution(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 4);
+  as_mesh(parts[0], "state");
+  auto laid = std::make_unique<Distribution>();
+  laid->mesh = parts[0];
+  laid->field = parts[1];
+  laid->shapes = as_shapes(parts[2], "state");
+  restore(parts[3], laid->result);
+  return laid;
+}
+
 py::object mapped_of(Distribution& self) {
   if (!self.mapped)
     self.mapped = py::cast(make_mapped(self.mesh, shapes_of(self), py::cast(Placements(self.result.placements)),
@@ -260,6 +278,7 @@ void bind_distribution(py::module_& m) {
         py::arg("gap") = 0.0, py::arg("size_range") = py::make_tuple(1.0, 1.0), py::arg("forbidden") = py::none(),
         py::arg("mirror") = false, py::arg("bend") = false, py::arg("tolerance") = 0.01, py::arg("threads") = 0,
         py::arg("job") = py::none(), k_distribute_doc);
+  let_travel<Distribution>(m, "Distribution", &save_distribution, &load_distribution);
 }
 
 }  // namespace saddleback::bindings

@@ -10,6 +10,7 @@
 #include "saddleback/mesh/trace.h"
 
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -313,6 +314,28 @@ py::array directions_at(const DirectionField& field, const py::object& points) {
   }));
 }
 
+py::tuple save_field(const py::object& self) {
+  const auto& field = py::cast<const DirectionField&>(self);
+  const py::object mesh = py::cast(field.mesh(), py::return_value_policy::reference);  // the object that it keeps alive
+  return py::make_tuple(mesh, field.symmetry(), self.attr("angles"), self.attr("turns"));
+}
+
+py::object load_field(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 4);
+  const Mesh& mesh = as_mesh(parts[0], "state");
+  int symmetry = 1;
+  std::vector<double> angles;
+  std::vector<Vec3> turns;
+  restore(parts[1], symmetry);
+  restore(parts[2], angles);
+  restore(parts[3], turns);
+  std::vector<double> flat;
+  for (const Vec3& row : turns) flat.insert(flat.end(), row.begin(), row.end());
+  py::object field = py::cast(DirectionField(mesh, symmetry, std::move(angles), std::move(flat)));
+  py::detail::keep_alive_impl(field, parts[0]);
+  return field;
+}
+
 void bind_direction_field(py::module_& m) {
   py::class_<DirectionField>(m, "DirectionField", py::module_local(), k_field_doc)
       .def_static("from_vectors", &field_from_vectors, py::arg("mesh"), py::arg("vectors"), py::arg("symmetry") = 1,
@@ -371,6 +394,21 @@ void bind_direction_field(py::module_& m) {
       });
 }
 
+py::tuple save_stroke(const py::object& self) {
+  const auto& stroke = py::cast<const Stroke&>(self);
+  const py::object mesh = py::cast(stroke.curve.mesh(), py::return_value_policy::reference);
+  return py::make_tuple(mesh, stroke.curve.points(), stroke.curve.closed(), stroke.is_hard, stroke.weight);
+}
+
+py::object load_stroke(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 5);
+  const auto [points, closed] = std::pair(py::cast<SurfacePoints>(parts[1]), py::cast<bool>(parts[2]));
+  const SurfaceCurve curve(as_mesh(parts[0], "state"), points, closed);
+  py::object stroke = py::cast(Stroke{curve, py::cast<bool>(parts[3]), py::cast<double>(parts[4])});
+  py::detail::keep_alive_impl(stroke, parts[0]);
+  return stroke;
+}
+
 void bind_strokes(py::module_& m) {
   py::class_<Stroke>(m, "Stroke", py::module_local(), k_stroke_doc)
       .def(py::init([](const py::object& curve, bool hard, const py::object& weight) {
@@ -387,6 +425,10 @@ struct StreamlinePath : GeodesicPath {
   std::size_t start = 0;
   StreamlineEnd begin_reason{}, end_reason{};
 };
+
+auto fields_of(StreamlinePath& of) {
+  return std::tie(of.points, of.surface, of.length, of.start, of.begin_reason, of.end_reason);
+}
 
 const char* name_of(StreamlineEnd reason) {
   if (reason == StreamlineEnd::length) return "length";
@@ -473,6 +515,9 @@ void bind_fields(py::module_& m) {
         py::arg("strokes") = py::tuple(), py::arg("align") = "none", py::kw_only(),
         py::arg("loop_indices") = py::none(), py::arg("align_weight") = 1.0, py::arg("job") = py::none(),
         k_direction_doc);
+  let_travel<DirectionField>(m, "DirectionField", &save_field, &load_field);
+  let_travel<Stroke>(m, "Stroke", &save_stroke, &load_stroke);
+  let_travel<StreamlinePath>(m, "Streamline");
 }
 
 }  // namespace saddleback::bindings

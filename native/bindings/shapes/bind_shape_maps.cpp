@@ -6,8 +6,10 @@
 #include "saddleback/shape_mapping/cut_shapes.h"
 #include "saddleback/shape_mapping/shape_attributes.h"
 
+#include "convert/fields.h"
 #include "convert/mapped_shapes.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -204,6 +206,7 @@ struct Conformed {
   ConformedPoints points;
   std::vector<Vec3> positions;
 };
+auto fields_of(Conformed& of) { return std::tie(of.points, of.positions); }
 
 std::vector<Vec3> as_vertices(const py::object& value) {
   std::vector<Vec3> result;
@@ -248,6 +251,7 @@ struct BentMeshes {
   BentCopies copies;
   std::vector<Vec3> positions;
 };
+auto fields_of(BentMeshes& of) { return std::tie(of.copies, of.positions); }
 
 std::vector<Solid> as_solids(const py::object& value, std::size_t count) {
   if (!py::isinstance<py::sequence>(value) || py::len(value) != count)
@@ -287,6 +291,7 @@ struct CutSurface {
   CutMesh cut;
   std::vector<Vec3> positions;
 };
+auto fields_of(CutSurface& of) { return std::tie(of.cut, of.positions); }
 
 CutSurface with_positions(const Mesh& mesh, CutMesh cut) {
   CutSurface result{std::move(cut), {}};
@@ -505,6 +510,20 @@ void bind_products(py::module_& m) {
           "(V, 2) float64: the vertex in the plane of that shape, in its units.");
 }
 
+py::tuple save_mapped(const py::object& self) {
+  const auto& mapped = py::cast<const MappedShapes&>(self);
+  py::list shapes;
+  for (const Shape& shape : mapped.shapes) shapes.append(shape);
+  return py::make_tuple(mapped.mesh_object, shapes, mapped.placements, mapped.field_object,
+                        py::make_tuple(mapped.limits.smallest, mapped.limits.largest));
+}
+
+/// Lays the shapes again, which takes less than to send what comes of it.
+std::unique_ptr<MappedShapes> load_mapped(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 5);
+  return make_mapped(parts[0], parts[1], parts[2], parts[3], parts[4], py::int_(0), py::none());
+}
+
 }  // namespace
 
 void bind_shape_maps(py::module_& m) {
@@ -550,6 +569,10 @@ void bind_shape_maps(py::module_& m) {
   m.def("map_shapes", &make_mapped, py::arg("mesh"), py::arg("shapes"), py::arg("placements"),
         py::arg("field") = py::none(), py::kw_only(), py::arg("limits") = py::make_tuple(0.5, 2.0),
         py::arg("threads") = 0, py::arg("job") = py::none(), k_map_doc);
+  let_travel<Conformed>(m, "ConformedPoints");
+  let_travel<BentMeshes>(m, "BentCopies");
+  let_travel<CutSurface>(m, "CutSurface");
+  let_travel<MappedShapes>(m, "MappedShapes", &save_mapped, &load_mapped);
 }
 
 }  // namespace saddleback::bindings

@@ -4,8 +4,10 @@
 #include "saddleback/charts/disk_map.h"
 #include "saddleback/charts/lifted_voronoi.h"
 
+#include "convert/fields.h"
 #include "convert/planar.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -86,6 +88,19 @@ struct Lifted {
   py::object chart;
   const Mesh& mesh() const { return py::cast<const Chart&>(chart).mesh(); }
 };
+
+py::tuple save_lifted(const py::object& self) {
+  const auto& lifted = py::cast<const Lifted&>(self);
+  return py::make_tuple(lifted.chart, state_of(lifted.result));
+}
+
+Lifted load_lifted(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 2);
+  if (!py::isinstance<Chart>(parts[0])) refuse_state("a Chart", parts[0]);
+  Lifted lifted{{}, parts[0]};
+  restore(parts[1], lifted.result);
+  return lifted;
+}
 
 template <auto Member>
 py::array array(const py::object& self) {
@@ -211,6 +226,15 @@ void bind_chart(py::module_& m) {
 void bind_charts(py::module_& m) {
   bind_lifted(m);
   bind_chart(m);
+  let_travel<Lifted>(m, "LiftedVoronoi", &save_lifted, &load_lifted);
+  let_travel<Chart>(
+      m, "Chart",
+      [](const py::object& self) {
+        const py::object mesh =
+            py::cast(py::cast<const Chart&>(self).mesh(), py::return_value_policy::reference);  // that it keeps alive
+        return py::make_tuple(mesh, self.attr("corners"));
+      },
+      [](const py::tuple& state) { return py::type::of<Chart>()(*as_state(state, 2)); });
   m.def(
       "harmonic_map",
       [](const py::object& mesh, const py::object& job) {

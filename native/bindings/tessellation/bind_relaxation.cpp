@@ -7,7 +7,9 @@
 #include "convert/cells.h"
 #include "convert/curves.h"
 #include "convert/devices.h"
+#include "convert/fields.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -22,6 +24,19 @@ struct Relaxed {
   CentroidalVoronoi result;
   py::object cells;
 };
+
+py::tuple save_relaxed(const py::object& self) {
+  const auto& relaxed = py::cast<const Relaxed&>(self);
+  return py::make_tuple(relaxed.cells, state_of(relaxed.result));
+}
+
+Relaxed load_relaxed(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 2);
+  as_cells(parts[0], "state");
+  Relaxed relaxed{{}, parts[0]};
+  restore(parts[1], relaxed.result);
+  return relaxed;
+}
 
 RelaxationMethod as_method(const std::string& name) {
   if (name == "lbfgs") return RelaxationMethod::lbfgs;
@@ -271,6 +286,7 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
         py::arg("held") = py::none(), py::arg("least_move") = 0.0, py::arg("cache") = py::none(),
         py::arg("closed_ball") = false, py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(),
         py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(), k_centroidal_doc);
+  let_travel<Relaxed>(m, "CentroidalVoronoi", &save_relaxed, &load_relaxed);
 }
 
 }  // namespace saddleback::bindings

@@ -8,7 +8,9 @@
 #include "convert/cells.h"
 #include "convert/devices.h"
 #include "convert/dual.h"
+#include "convert/fields.h"
 #include "convert/points.h"
+#include "convert/state.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -27,6 +29,7 @@ struct VoronoiEdge {
   std::array<Index, 2> cells;
   bool closed;
 };
+auto fields_of(VoronoiEdge& of) { return std::tie(of.points, of.surface, of.cells, of.closed); }
 
 const GeodesicVoronoi& diagram_of(const py::object& self) { return py::cast<const Cells&>(self).diagram; }
 
@@ -40,6 +43,12 @@ py::array array_of(const py::object& self) {
 SurfacePoints points_at(const GeodesicVoronoi& diagram, std::span<const Index> indices) {
   SurfacePoints points;
   for (const Index i : indices) points.push_back(diagram.points[i]);
+  return points;
+}
+
+SurfacePoints sites_at(const GeodesicVoronoi& diagram, std::span<const Index> indices) {
+  SurfacePoints points;
+  for (const Index i : indices) points.push_back(diagram.sites[i]);
   return points;
 }
 
@@ -201,6 +210,25 @@ py::list dual_paths(const Cells& cells, const py::object& threads, const py::obj
   for (GeodesicPath& path : without_gil([&] { return dual_edge_paths(graph, cells.diagram, count, token); }))
     result.append(std::move(path));
   return result;
+}
+
+py::tuple save_cells(const py::object& self) {
+  const auto& cells = py::cast<const Cells&>(self);
+  return py::make_tuple(cells.graph, state_of(cells.diagram), cells.by_cuda);
+}
+
+Cells load_cells(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 3);
+  if (!py::isinstance<SaddleVertexGraph>(parts[0])) refuse_state("a SaddleVertexGraph", parts[0]);
+  Cells cells{{}, parts[0], false};
+  restore(parts[1], cells.diagram);
+  restore(parts[2], cells.by_cuda);
+  GeodesicVoronoi& diagram = cells.diagram;
+  if (!diagram.exact_sites.empty()) {
+    const SurfacePoints sources = sites_at(diagram, diagram.exact_sites);
+    diagram.exact_field = without_gil([&] { return std::make_shared<const ExactField>(cells.mesh(), sources); });
+  }
+  return cells;
 }
 
 constexpr const char* k_dual_paths_doc = R"(The edges of the dual mesh as geodesics on the surface.
@@ -462,6 +490,8 @@ void bind_tessellation(py::module_& m) {
         py::kw_only(), py::arg("job") = py::none(), k_center_doc);
   m.def("geodesic_voronoi", &find_cells, py::arg("graph"), py::arg("sites"), py::kw_only(), py::arg("exact") = false,
         py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(), k_voronoi_doc);
+  let_travel<VoronoiEdge>(m, "VoronoiEdge");
+  let_travel<Cells>(m, "GeodesicVoronoi", &save_cells, &load_cells, 1);
 }
 
 }  // namespace saddleback::bindings

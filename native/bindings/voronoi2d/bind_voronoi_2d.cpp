@@ -3,7 +3,9 @@
 #include "saddleback/voronoi2d/voronoi_2d.h"
 
 #include "convert/devices.h"
+#include "convert/fields.h"
 #include "convert/planar.h"
+#include "convert/state.h"
 #include "support/memory/large_memory.h"
 
 namespace saddleback::bindings {
@@ -14,6 +16,19 @@ struct Diagram {
   Voronoi2d result;
   py::object clipped;
 };
+
+py::tuple save_diagram(const py::object& self) {
+  const auto& diagram = py::cast<const Diagram&>(self);
+  return py::make_tuple(state_of(diagram.result), diagram.clipped, state_of(diagram.result.device_times));
+}
+
+Diagram load_diagram(const py::tuple& state) {
+  const py::tuple parts = as_state(state, 3);
+  Diagram diagram{{}, parts[1]};
+  restore(parts[0], diagram.result);
+  restore(parts[2], diagram.result.device_times);
+  return diagram;
+}
 
 Voronoi2d find(const ArrayIn<double>& sites, const std::vector<double>& radii, const Voronoi2dOptions& options,
                Job* job) {
@@ -321,6 +336,7 @@ void bind_voronoi_2d(py::module_& m) {
   m.def("voronoi_2d", &find_diagram, py::arg("sites"), py::arg("weights") = py::none(), py::arg("domain") = py::none(),
         py::arg("circles") = 0, py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(),
         py::kw_only(), py::arg("pinned") = false, k_doc);
+  let_travel<Diagram>(m, "Voronoi2d", &save_diagram, &load_diagram, 1);
 }
 
 }  // namespace saddleback::bindings

@@ -2,6 +2,9 @@
 """Geodesic Voronoi cells and even tessellations on triangle meshes."""
 
 from saddleback import _interpreter  # noqa: F401  (first: before the compiled module)
+
+# isort: split
+from saddleback import _content, _conversions, _notebook  # noqa: F401  (they give the classes what Python does better)
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     BakedCells,
@@ -102,10 +105,12 @@ from saddleback._saddleback import (
     voronoi_2d_on_device,
 )
 from saddleback.density_match import DensityMatch, density_match
+from saddleback.mesh_files import write_curves, write_mesh
 from saddleback.placement_files import read_placement_field, read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.quality_plot import quality_plot
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
+from saddleback.viewers import plot, show
 
 __all__ = [
     "BakedCells",
@@ -192,6 +197,7 @@ __all__ = [
     "hausdorff_distance",
     "limit_device_memory",
     "map_shapes",
+    "plot",
     "polar_coordinates",
     "principal_curvatures",
     "progress_bar",
@@ -208,6 +214,7 @@ __all__ = [
     "repair",
     "sample",
     "self_crossings",
+    "show",
     "spread_values",
     "streamline",
     "trace",
@@ -216,5 +223,7 @@ __all__ = [
     "vertex_normals",
     "voronoi_2d",
     "voronoi_2d_on_device",
+    "write_curves",
+    "write_mesh",
     "write_placements",
 ]

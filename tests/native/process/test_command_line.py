@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The command line, as a new user would try it: on good meshes, broken ones, with wrong names and in scripts."""
 
 from __future__ import annotations

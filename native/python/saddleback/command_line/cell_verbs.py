@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """``saddleback cells``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """``saddleback completion``."""
 
 from __future__ import annotations

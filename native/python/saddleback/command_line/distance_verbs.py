@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """``saddleback graph``, ``distance`` and ``path``."""
 
 from __future__ import annotations

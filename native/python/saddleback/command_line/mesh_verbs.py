@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """``saddleback info`` and ``saddleback repair``."""
 
 from __future__ import annotations
@@ -28,7 +29,11 @@ def info(meshes: tuple[str, ...], as_json: bool) -> int:
             summary |= _of_mesh(sb.Mesh(vertices, triangles))
         except sb.MeshError as error:
             worst = 1
-            summary |= {"valid": False, "fault": str(error), "remedy": f"saddleback repair {name} -o FILE"}
+            summary |= {
+                "valid": False,
+                "fault": runs.fault_of("", error),
+                "remedy": f"saddleback repair {name} -o FILE",
+            }
         runs.say(summary, as_json)
     return worst
 

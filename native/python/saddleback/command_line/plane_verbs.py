@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """``saddleback voronoi2d``."""
 
 from __future__ import annotations

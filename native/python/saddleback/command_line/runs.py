@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What all verbs share: a mesh or a range of frames in, files out that are whole or not there, one summary."""
 
 from __future__ import annotations
@@ -93,7 +94,7 @@ class Run:
             return sb.read_mesh(self.source, job=self.job)
         except sb.MeshError as error:
             raise Failure(
-                f"{_after_name(self.source, error)}; --repair mends it on the way, `saddleback repair` writes it mended"
+                f"{fault_of(self.source, error)}; --repair mends it on the way, `saddleback repair` writes it mended"
             ) from None
 
     @functools.cached_property
@@ -116,8 +117,9 @@ class Run:
         return sb.project(self.mesh, np.array([reals(place, 3, f"--{what}-place") for place in places]))
 
 
-def _after_name(name: str, error: Exception) -> str:
-    text = str(error)
+def fault_of(name: str, error: Exception) -> str:
+    """Returns what is wrong with a mesh, without what a script would call."""
+    text = str(error).replace("; saddleback.repair mends this", "")
     return text if name in text else f"{name}: {text}"
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """``saddleback field``, ``distribute`` and ``check``."""
 
 from __future__ import annotations
