@@ -29,6 +29,13 @@ def site(tmp_path_factory) -> Path:
     return folder
 
 
+def test_nothing_but_a_site_is_replaced(tmp_path) -> None:
+    (tmp_path / "mine.txt").write_text("kept")
+    done = subprocess.run([ROOT / "docs/site/build", tmp_path], capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and "name another folder" in done.stderr
+    assert (tmp_path / "mine.txt").read_text() == "kept"
+
+
 class Links(HTMLParser):
     """What a page leads to, and what can be led to in it."""
 
