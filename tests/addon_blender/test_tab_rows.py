@@ -111,7 +111,14 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
                     panel.bl_options = closed
     # What is asked for only where another setting wants it.
     dependent = {
-        "tessellate": {"sites_object", "relax_sites", "cell_size"},
+        "tessellate": {
+            "sites_object",
+            "relax_sites",
+            "cell_size",
+            "rib_width_mm",
+            "rib_thickness_mm",
+            "base_height_mm",
+        },
         "distance": {"sources_group", "sources_collection", "sources_object", "isoline_spacing"},
         "path": {"points_group", "points_collection", "connect", "from_cursor"},
         "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},

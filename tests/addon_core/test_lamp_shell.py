@@ -12,7 +12,7 @@ from saddleback_blender.core.figures import shell_faults_of
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import LampShell
 from saddleback_blender.core.settings import TessellateSettings
-from saddleback_blender.core.solids.rib_surface import rib_surface
+from saddleback_blender.core.solids.rib_surface import RibShape, rib_surface
 from saddleback_blender.core.solids.shell_solid import thicken
 from tests import synthetic_cells
 from tests.synthetic_cells import triangle_areas
@@ -30,7 +30,7 @@ def square_cells(n=8):
 
 
 def ribs_of(mesh, cells, width):
-    return rib_surface("Shape", mesh, cells, width, runs.new_progress())
+    return rib_surface("Shape", mesh, cells, RibShape(width), runs.new_progress())
 
 
 def areas(ribs):
@@ -152,4 +152,6 @@ def test_without_lines_or_with_ribs_like_hairs_there_is_a_sentence():
 
 
 def test_a_sound_shell_has_nothing_to_tell():
-    assert shell_faults_of(LampShell(np.empty((0, 3)), np.empty((0, 3), np.int32), 1, 0.1, np.zeros(0, bool), 0)) == []
+    none = np.empty((0, 3))
+    sound = LampShell(none, none.astype(np.int32), 1, 0.1, np.zeros(0, bool), 0, none, np.empty(0))
+    assert shell_faults_of(sound) == []

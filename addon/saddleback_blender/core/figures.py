@@ -42,7 +42,7 @@ def shell_of(shell: LampShell, length: Callable[[float], str], volume: Callable[
         text += (
             f" ({length(float(shell.wall.min()))} at the least, {100 * shell.thinner:.2g} % thinned for want of room)"
         )
-    return text + f", volume {volume(shell.volume)}"
+    return text + f", volume {volume(shell.volume)}, {len(shell.triangles):,} faces"
 
 
 def shell_faults_of(shell: LampShell) -> list[str]:

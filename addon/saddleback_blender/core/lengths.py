@@ -10,6 +10,7 @@ from .errors import BadInputError
 from .requests import Surface
 from .settings import DistributeSettings, TessellateSettings, Voronoi2dSettings
 
+MILLIMETERS = "_mm"  # ends the name of the setting that says a length in millimeters, whatever the unit
 SHARE = "_share"  # ends the name of the setting that says a length in percent; the length's own name is before it
 MOST_CELLS = 1_000_000  # that a size may ask for: a number is typed on purpose, a size may be off by the model's unit
 RIB_SHARE = 0.125  # of a cell's size: the width of ribs where none is given
@@ -21,19 +22,33 @@ OUTPUTS = {
     "thickness": "make_cells",
     "rib_width": "make_shell",
     "rib_thickness": "make_shell",
+    "base_height": "make_shell",
     "isoline_radius": "make_isolines",
     "streamline_radius": "make_streamlines",
     "outline_radius": "make_outlines",
 }
 
 
-def world_lengths(settings: Any, surface: Surface, count: int) -> dict[str, Any]:
-    """Lengths by name in world units, those that the settings give as shares. `count` is the number of cells."""
-    if settings.lengths == "ABSOLUTE":
-        return {}
-    unit = _unit(settings, surface, count) / 100.0
-    shares = [name for name in vars(settings) if name.endswith(SHARE)]
-    return {name.removesuffix(SHARE): unit * getattr(settings, name) for name in shares}
+def millimeter(scale: float) -> float:
+    """World units in a millimeter, where a world unit is `scale` meters."""
+    return 0.001 / scale
+
+
+def world_lengths(settings: Any, surface: Surface, count: int, scale: float = 1.0) -> dict[str, Any]:
+    """Lengths by name in world units, those that the settings give as shares or in millimeters. `count` is the number
+    of cells; a world unit is `scale` meters.
+    """
+    lengths: dict[str, Any] = {}
+    if settings.lengths != "ABSOLUTE":
+        lengths |= _lengths(settings, SHARE, _unit(settings, surface, count) / 100.0)
+    if getattr(settings, "in_millimeters", False):
+        lengths |= _lengths(settings, MILLIMETERS, millimeter(scale))
+    return lengths
+
+
+def _lengths(settings: Any, ending: str, unit: float) -> dict[str, Any]:
+    names = [name for name in vars(settings) if name.endswith(ending)]
+    return {name.removesuffix(ending): unit * getattr(settings, name) for name in names}
 
 
 def _unit(settings: Any, surface: Surface, count: int) -> float:

@@ -237,15 +237,16 @@ def _whole_mesh(mirror: Mirror, progress: Progress) -> Any:
 
 
 def _shell(shell: LampShell, mirror: Mirror) -> LampShell:
-    vertices, _, triangles, twice, _ = _joined(shell.vertices, shell.feet, shell.triangles, mirror)
-    count = len(shell.vertices)
-    # First all vertices outside, then those inside, each as those that they stand on.
-    away = np.arange(count, len(vertices))
-    outside = int(twice[: count // 2].sum())
-    order = np.concatenate([np.arange(count // 2), away[:outside], np.arange(count // 2, count), away[outside:]])
-    number = np.empty(len(order), np.int32)
-    number[order] = np.arange(len(order), dtype=np.int32)
-    return replace(shell, vertices=vertices[order], triangles=number[triangles], crossing=2 * shell.crossing)
+    vertices, feet, triangles, twice, _ = _joined(shell.vertices, shell.feet, shell.triangles, mirror)
+    return replace(
+        shell,
+        vertices=vertices,
+        feet=feet,
+        triangles=triangles,
+        is_thinner=_twice(shell.is_thinner, twice),
+        wall=_twice(shell.wall, twice),
+        crossing=2 * shell.crossing,
+    )
 
 
 def _placed(placed: PlacedShapes, mirror: Mirror, progress: Progress) -> PlacedShapes:

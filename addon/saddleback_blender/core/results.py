@@ -84,6 +84,8 @@ class LampShell:
     thickness: float  # that was asked for
     is_thinner: NDArray[np.bool_]  # (n,) where there was no room for the whole thickness
     crossing: int  # triangles that still pass through others; not 0 only where the surface itself does
+    feet: Reals  # (n, 3) where on the surface the vertices stand: half-way between one outside and its like inside
+    wall: Reals  # (n,) how thick the solid is there, in the middle of the rib
 
     @property
     def thinner(self) -> float:
@@ -91,22 +93,10 @@ class LampShell:
         return float(self.is_thinner.mean())
 
     @property
-    def wall(self) -> Reals:
-        """(n,) how thick the solid is at each vertex."""
-        outside, inside = np.split(self.vertices, 2)
-        return np.tile(np.linalg.norm(outside - inside, axis=1), 2)
-
-    @property
     def volume(self) -> float:
         """What a printer fills."""
         a, b, c = (self.vertices[corner] for corner in self.triangles.T)
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
-
-    @property
-    def feet(self) -> Reals:
-        """(n, 3) where on the surface the vertices stand: half-way between one outside and its like inside."""
-        outside, inside = np.split(self.vertices, 2)
-        return np.tile(0.5 * (outside + inside), (2, 1))
 
     @property
     def nbytes(self) -> int:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
 from .solids.crossings import find_crossings
 from .solids.level_lines import LevelLines, isoline_levels, level_lines
-from .solids.rib_surface import rib_surface
+from .solids.rib_surface import RibShape, rib_surface
 from .solids.shell_solid import thicken
 from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
@@ -366,12 +366,14 @@ def _shell(
     width = progress.choose("rib_width", settings.rib_width, RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas)))
     thickness = progress.choose("rib_thickness", settings.rib_thickness, width)
 
+    shape = RibShape(width, settings.rib_profile == "ROUND", settings.base_height)
+
     def build() -> LampShell:
         with progress.stage(0.95, "making the ribs of the lamp shell"):
-            ribs = rib_surface(request.surface.name, mesh, solved.cells, width, progress)
-        return thicken(ribs, thickness, find_crossings, progress)
+            ribs = rib_surface(request.surface.name, mesh, solved.cells, shape, progress)
+        return thicken(ribs, thickness, find_crossings, progress, shape.is_round)
 
-    return cache.get(("shell", *key, digest(width, thickness)), build, lambda shell: shell.nbytes)
+    return cache.get(("shell", *key, digest(*astuple(shape), thickness)), build, lambda shell: shell.nbytes)
 
 
 def _edge_distance(surface: Surface, split: Any) -> Reals:

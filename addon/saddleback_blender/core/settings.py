@@ -96,6 +96,14 @@ class TessellateSettings(DensitySettings, PatternSettings):
     rib_width_share: float = 12.5
     rib_thickness: float = 0.0  # 0 = as wide
     rib_thickness_share: float = 12.5
+    base_height: float = 0.0  # all is solid up to so far above the lowest point
+    base_height_share: float = 0.0
+    in_millimeters: bool = False  # the three lengths of the shell, whatever the unit of others
+    rib_width_mm: float = 2.0
+    rib_thickness_mm: float = 2.0
+    base_height_mm: float = 0.0
+    rib_profile: str = "SQUARE"  # SQUARE, ROUND
+    shell_faces: int = 0  # about so many triangles at most; 0 = as many as there are
     cell_attribute: str = "saddleback_cell"
     distance_attribute: str = "saddleback_distance"
     density_attribute: str = "saddleback_density"

@@ -13,7 +13,7 @@ from . import (
     direction_field,
     distance,
     distribute,
-    export_stl,
+    export_solid,
     layers,
     live,
     look_presets,
@@ -37,7 +37,7 @@ CLASSES = (
     *bake.CLASSES,
     *paint.CLASSES,
     *repair.CLASSES,
-    *export_stl.CLASSES,
+    *export_solid.CLASSES,
     *clear.CLASSES,
     *asset_library.CLASSES,
 )

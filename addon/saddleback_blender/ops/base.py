@@ -117,7 +117,8 @@ class SurfaceOperator(PolledOperator):
 
     def measured(self, settings: Settings, surface: Surface, count: int = 0) -> Settings:
         """The settings with all lengths in world units; `count` is the number of cells, where there are cells."""
-        self._surface, self._lengths = surface, world_lengths(settings, surface, count)
+        scale = bpy.context.scene.unit_settings.scale_length
+        self._surface, self._lengths = surface, world_lengths(settings, surface, count, scale)
         return replace(settings, **self._lengths)
 
     def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:

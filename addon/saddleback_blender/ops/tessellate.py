@@ -19,6 +19,7 @@ from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_sites
 from ..bridge.inputs.source import shared_mesh_warning
+from ..bridge.outputs.fewer_faces import with_fewer_faces
 from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_attributes import write_vertex_attributes
 from ..bridge.outputs.out_cells import CELLS_ROLE, write_cells
@@ -132,6 +133,8 @@ class CellsOperator(SurfaceOperator):
         if result.edge_distance is not None:
             values[settings.edge_distance_attribute] = result.edge_distance.astype(np.float32)
         write_vertex_attributes(surface, values)
+        if result.shell is not None:
+            result = replace(result, shell=with_fewer_faces(context, result.shell, settings.shell_faces))
         outputs: tuple[tuple[bool, Callable[..., object], str], ...] = (
             (settings.make_edges, write_edges, EDGES_ROLE),
             (settings.make_cells, write_cells, CELLS_ROLE),

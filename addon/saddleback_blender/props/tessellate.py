@@ -43,11 +43,23 @@ EDGE_KINDS = (
     ("CURVE", "Curve", "A curve object with a bevel"),
 )
 
+RIB_PROFILES = (
+    ("SQUARE", "Square", "As thick at the sides as in the middle"),
+    ("ROUND", "Round", "Rounded to both sides of the surface; thick as asked in the middle"),
+)
 INSTANCE_SIZES = (
     ("EQUAL", "Equal", "All alike: of dots placed by an image, their number makes its tone"),
     ("CELL", "By Cell", "As large as their cells"),
     ("TONE", "By Tone", "Large where the image is dark, or the density high, within their cells"),
 )
+
+
+def _millimeters(label: str, description: str, default: float) -> Any:
+    return FloatProperty(
+        name=label, description=description, default=default, min=0.0, soft_max=50.0, precision=2, step=10,
+        options={"SKIP_SAVE"},
+    )  # fmt: skip
+
 
 # How even cells become: iterations, annealing, starts.
 EVENNESSES = {"QUICK": (5, 0, 1), "EVEN": (15, 0, 1), "PERFECT": (60, 200, 1)}
@@ -191,6 +203,22 @@ TESSELLATE: dict[str, Any] = {
         0.0,
     ),
     "rib_thickness_share": share("Rib Thickness", "How thick the lamp shell is, in percent of a cell's size", 12.5),
+    "base_height": length("Base", "All is solid up to this height above the lowest point: a ring to stand on", 0.0),
+    "base_height_share": share("Base", "The height up to which all is solid, in percent of a cell's size", 0.0),
+    "in_millimeters": switch("Millimeters", "Give the lengths of the lamp shell in millimeters of the scene", False),
+    "rib_width_mm": _millimeters("Rib Width", "How wide the ribs are, in millimeters", 2.0),
+    "rib_thickness_mm": _millimeters("Rib Thickness", "How thick the lamp shell is, in millimeters", 2.0),
+    "base_height_mm": _millimeters("Base", "The height up to which all is solid, in millimeters", 0.0),
+    "rib_profile": choice("Ribs", "What ribs are like across", RIB_PROFILES, "SQUARE"),
+    "shell_faces": IntProperty(
+        name="Faces",
+        description="About so many triangles at most: the shell is simplified, stays closed and does not pass through "
+        "itself; 0: as many as there are",
+        default=0,
+        min=0,
+        soft_max=500_000,
+        options={"SKIP_SAVE"},
+    ),
     "cell_attribute": name_of("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
     "distance_attribute": name_of("Distance Attribute", "Where distances are written", "saddleback_distance"),
     "density_attribute": name_of("Density Attribute", "Where the density used is written", "saddleback_density"),

@@ -165,12 +165,23 @@ def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
 def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:
     """The printable ribs."""
     layout.active = settings.make_shell
+    layout.prop(settings, "in_millimeters")
     for name, text in (("rib_width", "Width"), ("rib_thickness", "Thickness")):
-        if is_relative(settings):
+        if settings.in_millimeters:
+            layout.prop(settings, f"{name}_mm", text=text)
+        elif is_relative(settings):
             draw_length(layout, settings, name, text)
         else:
             draw_automatic(layout, settings, name, text)
-    layout.operator("saddleback.export_stl", icon="EXPORT")
+    if settings.in_millimeters:
+        layout.prop(settings, "base_height_mm")
+    else:
+        draw_length(layout, settings, "base_height")
+    layout.prop(settings, "rib_profile")
+    draw_automatic(layout, settings, "shell_faces", zero="All")
+    row = layout.row(align=True)
+    row.operator("saddleback.export_stl", icon="EXPORT")
+    row.operator("saddleback.export_3mf", icon="EXPORT")
 
 
 def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:

@@ -25,6 +25,7 @@ from .mesh_edges import border_edges
 # Vertices nearer to the level than this share of half the width are moved off it: then the cut passes through no
 # vertex, the strip is a surface everywhere (nowhere two pieces meet in a point), and no triangle is a needle.
 OFF_LEVEL = 0.05
+ROUND_LINES = (0.75, 0.35)  # of half the width: where round ribs have lines of vertices
 # Pairs of a point and a segment that are measured at once.
 PAIRS = 1 << 17
 # Ribs are this many times as long as wide at most, all together; a solid has about forty triangles for each.
@@ -33,20 +34,33 @@ POSITION, DISTANCE = slice(0, 3), 3
 
 
 @dataclass(frozen=True)
+class RibShape:
+    """How wide ribs are; whether they are round across; up to which height above the lowest point all is solid."""
+
+    width: float
+    is_round: bool = False
+    base: float = 0.0
+
+
+@dataclass(frozen=True)
 class RibSurface:
-    """Refined mesh: vertices (n, 3), triangles (t, 3), and which of them (t,) are ribs."""
+    """Refined mesh: vertices (n, 3), triangles (t, 3), which of them (t,) are ribs, and how far (n,) vertices are from
+    the middle of the rib, in halves of its width.
+    """
 
     vertices: Reals
     triangles: Indices
     is_rib: NDArray[np.bool_]
+    across: Reals
 
 
-def rib_surface(name: str, mesh: Any, cells: Any, width: float, progress: Progress) -> RibSurface:
+def rib_surface(name: str, mesh: Any, cells: Any, shape: RibShape, progress: Progress) -> RibSurface:
     """The ribs of the library's cells on its mesh; a border of the mesh has a rib, too.
 
     `name` of the object, for messages. Raises BadInputError where there are no lines, or the ribs are too narrow for
     the mesh. O(t) and the number of points times the number of segments around their cell.
     """
+    width = shape.width
     length = _length(mesh, cells)
     if not length:
         raise BadInputError(f"'{name}': there are no lines between cells to make ribs of; ask for more cells")
@@ -57,7 +71,8 @@ def rib_surface(name: str, mesh: Any, cells: Any, width: float, progress: Progre
     vertices, triangles = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.triangles, np.int32)
     face = np.arange(len(triangles), dtype=np.int32)
     points = _surface_points(mesh, vertices, triangles, face, 0)
-    distance = lines.distance(vertices, points, progress)
+    level, ground = 0.5 * width, _Ground(vertices, shape)
+    distance = ground.distance(vertices, lines.distance(vertices, points, progress))
     fields = np.column_stack([vertices, distance])
     while True:
         progress.check()
@@ -70,25 +85,42 @@ def rib_surface(name: str, mesh: Any, cells: Any, width: float, progress: Progre
         progress.check()
         fields, triangles, face = cut.fields, cut.triangles, face[cut.parent]
         added = _surface_points(mesh, fields[:, POSITION], triangles, face, old)
-        fields[old:, DISTANCE] = lines.distance(fields[old:, POSITION], added, progress)
-    level = 0.5 * width
-    above = fields[:, DISTANCE] - level
-    fields[:, DISTANCE] = level + np.where(above < 0, -1, 1) * np.maximum(abs(above), OFF_LEVEL * level)
+        there = fields[old:, POSITION]
+        fields[old:, DISTANCE] = ground.distance(there, lines.distance(there, added, progress))
     fields[~np.isfinite(fields[:, DISTANCE]), DISTANCE] = 2 * width
+    # The sides first: moving vertices off the other lines would move them, too.
+    for share in (1.0, *(ROUND_LINES if shape.is_round else ())):
+        progress.check()
+        above = fields[:, DISTANCE] - share * level
+        fields[:, DISTANCE] = share * level + np.where(above < 0, -1, 1) * np.maximum(abs(above), OFF_LEVEL * level)
+        cut = cut_at_level(fields, triangles, DISTANCE, share * level)
+        fields, triangles = cut.fields, cut.triangles
     progress.check()
-    cut = cut_at_level(fields, triangles, DISTANCE, level)
-    progress.check()
-    corner = cut.fields[cut.triangles, DISTANCE]
-    return RibSurface(cut.fields[:, POSITION], cut.triangles, corner.min(axis=1) < level)
+    is_rib = fields[triangles, DISTANCE].min(axis=1) < level
+    return RibSurface(fields[:, POSITION], triangles, is_rib, np.clip(fields[:, DISTANCE] / level, 0.0, 1.0))
+
+
+class _Ground:
+    """What is solid from the lowest point up to the base's height: there distances are below half the width."""
+
+    def __init__(self, vertices: Reals, shape: RibShape) -> None:
+        self._top, self._level = float(vertices[:, 2].min()) + shape.base, 0.5 * shape.width
+        self._is_wanted = shape.base > 0.0
+
+    def distance(self, places: Reals, distance: Reals) -> Reals:
+        """The less (n,) of the distance (n,) to lines and that to the base, of places (n, 3)."""
+        return np.minimum(distance, self._level + places[:, 2] - self._top) if self._is_wanted else distance
 
 
 def _too_long(fields: Reals, triangles: Indices, width: float) -> NDArray[np.bool_]:
-    """Sides (t, 3) that are longer than half the width and may come nearer to a line than that."""
+    """Sides (t, 3) that are longer than half the width and may come nearer to a line than that, but for those deep in
+    the base.
+    """
     places, distance = fields[triangles, POSITION], fields[triangles, DISTANCE]
     length = np.linalg.norm(np.roll(places, -1, axis=1) - places, axis=2)
     # A distance changes by no more than the way.
-    least = 0.5 * (distance + np.roll(distance, -1, axis=1) - length)
-    long: NDArray[np.bool_] = (length > 0.5 * width) & (least < 0.5 * width)
+    both = distance + np.roll(distance, -1, axis=1)
+    long: NDArray[np.bool_] = (length > 0.5 * width) & (both - length < width) & (both + length > -width)
     return long
 
 

@@ -23,26 +23,30 @@ from .sewn import sewn
 
 THINNER, LEAST_SHARE, PATIENCE = 0.6, 1e-5, 20
 END = 0.99  # of the run's progress
+RIM = 0.25  # of the thickness of a round rib in its middle: how thick it is at its sides
 # A place that meets itself after so many times is folded, and is smoothed each time from then on.
 FOLDED_AFTER = 5
 
 
-def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, progress: Progress) -> LampShell:
+def thicken(
+    ribs: RibSurface, thickness: float, find_crossings: FindCrossings, progress: Progress, is_round: bool = False
+) -> LampShell:
     """The solid, half the thickness to either side of the surface, of which parts that lie border on border are
-    joined.
+    joined. Round ribs are half ellipses to either side, but for a low wall at their sides.
     """
     surface = sewn(ribs.vertices, ribs.triangles)
     progress.check()
     direction = smooth_directions(ribs.vertices, surface, thickness, progress)
-    vertices, triangles = drop_unused(np.column_stack([ribs.vertices, direction]), surface[ribs.is_rib])
+    fields, triangles = drop_unused(np.column_stack([ribs.vertices, direction, ribs.across]), surface[ribs.is_rib])
     progress.check()
-    places, direction = vertices[:, :3].copy(), vertices[:, 3:].copy()
+    places, direction = fields[:, :3].copy(), fields[:, 3:6].copy()
+    profile = RIM + (1.0 - RIM) * np.sqrt(1.0 - fields[:, 6] ** 2) if is_round else np.ones(len(fields))
     count = len(places)
     faces = _closed(triangles, count)
     progress.check()
 
     def at(share: Reals) -> Reals:
-        offset = (0.5 * thickness * share)[:, None] * direction
+        offset = (0.5 * thickness * profile * share)[:, None] * direction
         return np.concatenate([places + offset, places - offset])
 
     def mend(times: int, there: NDArray[np.bool_]) -> None:
@@ -51,13 +55,16 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
 
     solid = Solid(faces, np.tile(np.arange(count, dtype=np.int32), 2), count, at, THINNER, LEAST_SHARE, PATIENCE, mend)
     fitted = fit(solid, find_crossings, END, "making the lamp shell", progress)
+    outside, inside = np.split(fitted.vertices, 2)
     return LampShell(
-        fitted.vertices,
-        faces,
-        int(native.load().connected_parts(triangles, count).max()) + 1,
-        thickness,
-        np.tile(fitted.share < 1.0, 2),
-        len(fitted.crossing),
+        vertices=fitted.vertices,
+        triangles=faces,
+        pieces=int(native.load().connected_parts(triangles, count).max()) + 1,
+        thickness=thickness,
+        is_thinner=np.tile(fitted.share < 1.0, 2),
+        crossing=len(fitted.crossing),
+        feet=np.tile(0.5 * (outside + inside), (2, 1)),
+        wall=np.tile(np.linalg.norm(outside - inside, axis=1) / profile, 2),
     )
 
 

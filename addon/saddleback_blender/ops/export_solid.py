@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`saddleback.export_stl`: the lamp shell as a file for 3D printers."""
+"""`saddleback.export_stl` and `saddleback.export_3mf`: the lamp shell as a file for 3D printers."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -15,24 +16,27 @@ from ..bridge.inputs.mesh_in import read_triangles
 from ..bridge.inputs.source import active_object
 from ..bridge.outputs.out_collection import find_output
 from ..bridge.outputs.out_shell import SHELL_ROLE
+from ..core.lengths import millimeter
 from ..core.results import Indices, Reals
 from ..core.solids.stl import stl_bytes
+from ..core.solids.three_mf import three_mf_bytes
 
-MILLIMETERS = 1000.0
 
-
-class SADDLEBACK_OT_export_stl(bpy.types.Operator):
-    """Writes what can be printed."""
-
-    bl_idname = "saddleback.export_stl"
-    bl_label = "Export STL"
-    bl_description = "Save the lamp shell of the active object for a 3D printer, in millimeters by the scene's units"
-    bl_options = {"REGISTER"}
-    filepath: str
-    __annotations__ = {
+def _properties(ending: str) -> dict[str, object]:
+    return {
         "filepath": StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"}),
-        "filter_glob": StringProperty(default="*.stl", options={"HIDDEN", "SKIP_SAVE"}),
+        "filter_glob": StringProperty(default=f"*{ending}", options={"HIDDEN", "SKIP_SAVE"}),
     }
+
+
+class ExportOperator:
+    """Mixin: writes what can be printed."""
+
+    ending: str
+    written: Callable[[Reals, Indices], bytes]
+    filepath: str
+    report: Callable[..., None]
+    poll_message_set: Callable[..., None]
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -45,7 +49,7 @@ class SADDLEBACK_OT_export_stl(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Asks for the file."""
-        self.filepath = self.filepath or f"{bpy.path.clean_name(active_object(context).name)} Lamp.stl"
+        self.filepath = self.filepath or f"{bpy.path.clean_name(active_object(context).name)} Lamp{self.ending}"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
@@ -55,19 +59,41 @@ class SADDLEBACK_OT_export_stl(bpy.types.Operator):
         if not self.filepath:
             self.report({"ERROR"}, "Name a file to save the lamp shell in")
             return {"CANCELLED"}
-        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".stl"))
+        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.ending))
         points, triangles = _solid(context, shell)
         part = path.with_name(path.name + ".part")
         try:
-            part.write_bytes(stl_bytes(points, triangles))
+            part.write_bytes(type(self).written(points, triangles))
             os.replace(part, path)
         except OSError as error:
             part.unlink(missing_ok=True)
             self.report({"ERROR"}, f"'{path.name}' cannot be saved: {error.strerror}")
             return {"CANCELLED"}
         size = " x ".join(f"{side:.4g}" for side in np.ptp(points, axis=0))
-        self.report({"INFO"}, f"Saved '{path.name}': {size} mm")
+        self.report({"INFO"}, f"Saved '{path.name}': {size} mm, {len(triangles):,} faces")
         return {"FINISHED"}
+
+
+class SADDLEBACK_OT_export_stl(ExportOperator, bpy.types.Operator):
+    """Writes an STL file."""
+
+    bl_idname = "saddleback.export_stl"
+    bl_label = "Export STL"
+    bl_description = "Save the lamp shell of the active object for a 3D printer, in millimeters by the scene's units"
+    bl_options = {"REGISTER"}
+    ending, written = ".stl", staticmethod(stl_bytes)
+    __annotations__ = _properties(".stl")
+
+
+class SADDLEBACK_OT_export_3mf(ExportOperator, bpy.types.Operator):
+    """Writes a 3MF file."""
+
+    bl_idname = "saddleback.export_3mf"
+    bl_label = "Export 3MF"
+    bl_description = "Save the lamp shell of the active object as 3MF, which says itself that it is in millimeters"
+    bl_options = {"REGISTER"}
+    ending, written = ".3mf", staticmethod(three_mf_bytes)
+    __annotations__ = _properties(".3mf")
 
 
 def _solid(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, Indices]:
@@ -76,8 +102,9 @@ def _solid(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, I
     mesh = shown.to_mesh()
     places, triangles = compat.read_positions(mesh), read_triangles(mesh).copy()
     shown.to_mesh_clear()
-    unit, world = MILLIMETERS * context.scene.unit_settings.scale_length, np.array(item.matrix_world)
-    return unit * (places @ world[:3, :3].T + world[:3, 3]), triangles
+    world = np.array(item.matrix_world)
+    scale = context.scene.unit_settings.scale_length
+    return (places @ world[:3, :3].T + world[:3, 3]) / millimeter(scale), triangles
 
 
-CLASSES = (SADDLEBACK_OT_export_stl,)
+CLASSES = (SADDLEBACK_OT_export_stl, SADDLEBACK_OT_export_3mf)
