@@ -225,6 +225,7 @@ def test_frames(capsys, tmp_path: Path) -> None:
     assert not Path("d.0009.npy").exists()  # nothing is begun that cannot be ended
     code, out, _ = ask(capsys, *words, "--resume", "--json")
     assert [json.loads(line)["frame"] for line in out.splitlines()] == [9]
+    assert ask(capsys, *words, "--resume") == (0, "the files of all frames are there\n", "")
     assert summary(capsys, *words, "--force", "--frames", "10")["frame"] == 10
     code, _, err = ask(capsys, *words, "--frames", "10-11", "--force")
     assert code == 1
@@ -346,6 +347,7 @@ def test_ctrl_c_ends_it_soon_and_leaves_nothing(tmp_path: Path) -> None:
     assert not [name for name in os.listdir() if "cells" in name]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="closed pipes are other errors there; CI runs it on Linux")
 def test_a_closed_pipe_is_told(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "saddleback", "info", *["good.ply"] * 50]
     to_read, to_write = os.pipe()

@@ -60,6 +60,7 @@ class _Verbs(click.Group):
 
 @click.command(
     cls=_Verbs,
+    subcommand_metavar="VERB ...",
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
     epilog="Meshes are obj, ply, off or stl, compressed with .gz or not. `saddleback VERB --help` tells more. "
     "Exit codes: 0 done, 1 failed, 2 wrong command line, 3 a check found faults, 130 Ctrl-C, 141 pipe closed.",

@@ -269,6 +269,8 @@ def verb(*options: Option) -> Callable[[Callable[..., Summary | int]], click.Com
             patterns = {key: own.pop(key) for key in outputs}
             numbers = frames_of(mesh, frames)
             files = _files(numbers, patterns, outputs, resume, force)
+            if not files and not as_json:
+                click.echo("the files of all frames are there")
             worst = 0
             for frame, out in files:
                 source = fill(mesh, frame)
