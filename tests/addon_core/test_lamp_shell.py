@@ -14,7 +14,7 @@ from saddleback_blender.core.results import LampShell
 from saddleback_blender.core.settings import TessellateSettings
 from saddleback_blender.core.solids.rib_surface import RibShape, rib_surface
 from saddleback_blender.core.solids.shell_solid import thicken
-from tests import synthetic_cells
+from tests import meshes, synthetic_cells
 from tests.synthetic_cells import triangle_areas
 
 NONE = np.empty((0, 2), np.int32)
@@ -155,3 +155,16 @@ def test_a_sound_shell_has_nothing_to_tell():
     none = np.empty((0, 3))
     sound = LampShell(none, none.astype(np.int32), 1, 0.1, np.zeros(0, bool), 0, none, np.empty(0))
     assert shell_faults_of(sound) == []
+
+
+@pytest.mark.parametrize("profile", ["SQUARE", "ROUND"])
+def test_ribs_of_a_cylinder_have_room_everywhere(profile):
+    vertices, triangles = meshes.cylinder(48, 10, radius=0.05, height=0.14)
+    settings = TessellateSettings(
+        count=60, iterations=10, make_shell=True, rib_width=0.005, rib_thickness=0.004, rib_profile=profile,
+        base_height=0.02,
+    )  # fmt: skip
+    request = TessellateRequest(Surface("Shade", vertices, triangles, len(vertices)), settings)
+    shell = runs.tessellate(request, runs.new_progress()).shell
+    assert (shell.pieces, shell.thinner, shell.crossing) == (1, 0.0, 0)
+    np.testing.assert_allclose(shell.wall, 0.004, rtol=1e-3)

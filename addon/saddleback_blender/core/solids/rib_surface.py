@@ -25,7 +25,6 @@ from .mesh_edges import border_edges
 # Vertices nearer to the level than this share of half the width are moved off it: then the cut passes through no
 # vertex, the strip is a surface everywhere (nowhere two pieces meet in a point), and no triangle is a needle.
 OFF_LEVEL = 0.05
-ROUND_LINES = (0.75, 0.35)  # of half the width: where round ribs have lines of vertices
 # Pairs of a point and a segment that are measured at once.
 PAIRS = 1 << 17
 # Ribs are this many times as long as wide at most, all together; a solid has about forty triangles for each.
@@ -35,10 +34,9 @@ POSITION, DISTANCE = slice(0, 3), 3
 
 @dataclass(frozen=True)
 class RibShape:
-    """How wide ribs are; whether they are round across; up to which height above the lowest point all is solid."""
+    """How wide ribs are, and up to which height above the lowest point all is solid."""
 
     width: float
-    is_round: bool = False
     base: float = 0.0
 
 
@@ -88,16 +86,18 @@ def rib_surface(name: str, mesh: Any, cells: Any, shape: RibShape, progress: Pro
         there = fields[old:, POSITION]
         fields[old:, DISTANCE] = ground.distance(there, lines.distance(there, added, progress))
     fields[~np.isfinite(fields[:, DISTANCE]), DISTANCE] = 2 * width
-    # The sides first: moving vertices off the other lines would move them, too.
-    for share in (1.0, *(ROUND_LINES if shape.is_round else ())):
-        progress.check()
-        above = fields[:, DISTANCE] - share * level
-        fields[:, DISTANCE] = share * level + np.where(above < 0, -1, 1) * np.maximum(abs(above), OFF_LEVEL * level)
-        cut = cut_at_level(fields, triangles, DISTANCE, share * level)
-        fields, triangles = cut.fields, cut.triangles
+    level_off(fields, DISTANCE, level)
     progress.check()
-    is_rib = fields[triangles, DISTANCE].min(axis=1) < level
-    return RibSurface(fields[:, POSITION], triangles, is_rib, np.clip(fields[:, DISTANCE] / level, 0.0, 1.0))
+    cut = cut_at_level(fields, triangles, DISTANCE, level)
+    progress.check()
+    is_rib = cut.fields[cut.triangles, DISTANCE].min(axis=1) < level
+    return RibSurface(cut.fields[:, POSITION], cut.triangles, is_rib, cut.fields[:, DISTANCE] / level)
+
+
+def level_off(fields: Reals, column: int, level: float) -> None:
+    """Moves values so near to the level off it that a cut would pass through vertices."""
+    above = fields[:, column] - level
+    fields[:, column] = level + np.where(above < 0, -1, 1) * np.maximum(abs(above), OFF_LEVEL * level)
 
 
 class _Ground:

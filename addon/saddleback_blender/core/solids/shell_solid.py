@@ -16,13 +16,17 @@ from ..progress import Progress
 from ..results import Indices, LampShell, Reals
 from .cell_mesh import drop_unused
 from .directions import Neighbors, smooth_directions
+from .level_cut import cut_at_level
 from .mesh_edges import border_edges
-from .rib_surface import RibSurface
+from .rib_surface import RibSurface, level_off
 from .room import FindCrossings, Solid, beside, fit
 from .sewn import sewn
 
 THINNER, LEAST_SHARE, PATIENCE = 0.6, 1e-5, 20
+ACROSS = 6  # after place and direction: how far from the middle of the rib, in halves of its width
 END = 0.99  # of the run's progress
+# Of half the width: where round ribs have lines of vertices.
+ROUND_LINES = (0.75, 0.35)
 RIM = 0.25  # of the thickness of a round rib in its middle: how thick it is at its sides
 # A place that meets itself after so many times is folded, and is smoothed each time from then on.
 FOLDED_AFTER = 5
@@ -37,10 +41,21 @@ def thicken(
     surface = sewn(ribs.vertices, ribs.triangles)
     progress.check()
     direction = smooth_directions(ribs.vertices, surface, thickness, progress)
-    fields, triangles = drop_unused(np.column_stack([ribs.vertices, direction, ribs.across]), surface[ribs.is_rib])
+    fields, triangles = np.column_stack([ribs.vertices, direction, ribs.across]), surface[ribs.is_rib]
+    for share in ROUND_LINES if is_round else ():
+        # Directions are mixed along edges: those of new small triangles would cross each other.
+        progress.check()
+        level_off(fields, ACROSS, share)
+        cut = cut_at_level(fields, triangles, ACROSS, share)
+        fields, triangles = cut.fields, cut.triangles
+    fields, triangles = drop_unused(fields, triangles)
     progress.check()
     places, direction = fields[:, :3].copy(), fields[:, 3:6].copy()
-    profile = RIM + (1.0 - RIM) * np.sqrt(1.0 - fields[:, 6] ** 2) if is_round else np.ones(len(fields))
+    profile = (
+        RIM + (1.0 - RIM) * np.sqrt(1.0 - np.clip(fields[:, ACROSS], 0.0, 1.0) ** 2)
+        if is_round
+        else np.ones(len(fields))
+    )
     count = len(places)
     faces = _closed(triangles, count)
     progress.check()
