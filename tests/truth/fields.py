@@ -10,6 +10,8 @@ from tests.native.field_indices import index_sums, turns, twins
 from tests.truth.lines_and_maps import Floats, Random
 from tests.truth.registry import guards
 
+UNTANGLED = 0.6 * np.pi  # a field that turns less across an edge, times its symmetry, is left as it is
+
 
 def frames(mesh: sb.Mesh) -> tuple[Floats, Floats, Floats]:
     """Of each face: along its first edge, across that, and up."""
@@ -95,6 +97,34 @@ def smooth_fields(mesh: sb.Mesh, rng: Random) -> None:
     field = sb.direction_field(mesh, symmetry, wanted)
     assert field.singularities == wanted
     assert_is_field(mesh, field)
+
+
+@guards("direction_field", "DirectionFieldEditor.field")
+def given_in_part(mesh: sb.Mesh, rng: Random) -> None:
+    """Directions of a field that was turned, given in some faces or all vertices: indices recounted from the vectors
+    are those asked for; where all are given with great weights the field is the turned one. With indices that is to
+    the hundredth of a turn across a face that rounds over faces leave, and unless it turns so fast that it would have
+    to be untangled.
+    """
+    if not is_usual(mesh):
+        return
+    symmetry = int(rng.choice([1, 2, 4]))
+    smooth = sb.direction_field(mesh, symmetry)
+    turned = smooth.turned(float(rng.uniform(-7, 7)))
+    loops = dict(enumerate(smooth.loop_indices.tolist()))
+    some = np.where((rng.random(mesh.face_count) < rng.random())[:, None], turned.vectors, 0)
+    field = sb.direction_field(mesh, symmetry, smooth.singularities, loop_indices=loops, directions=some)
+    assert field.singularities == smooth.singularities
+    assert_is_field(mesh, field)
+    assert_is_field(mesh, sb.direction_field(mesh, symmetry, directions=some))
+    weights = np.full(mesh.face_count, 1e9)
+    for singularities, loop_indices in ((None, None), (smooth.singularities, loops)):
+        found = sb.direction_field(
+            mesh, symmetry, singularities, loop_indices=loop_indices, directions=turned.vectors, weights=weights
+        )
+        if singularities is None or smooth.largest_turn < UNTANGLED / symmetry:
+            most = 1e-6 if singularities is None else 0.03
+            assert between(found.angles, turned.angles, symmetry).max() < most
 
 
 @guards("DirectionField.from_vectors", "DirectionField.from_turns", "DirectionField.turned")

@@ -33,8 +33,8 @@ Raises:
 constexpr const char* k_direction_doc = R"(Directions all over a surface, smooth, with singularities where one wants.
 
 With `singularities`: the field that turns least of those that have exactly these (trivial connections [crane2010]).
-Strokes and alignment turn it by one angle a face, which cannot change any index. Without: the smoothest field, or the
-one nearest to strokes and alignment, with the singularities that it then has [knoppel2013].
+Strokes, directions and alignment turn it by one angle a face, which cannot change any index. Without: the smoothest
+field, or the one nearest to strokes, directions and alignment, with the singularities that it then has [knoppel2013].
 
 Args:
     mesh: the mesh, kept alive by the field.
@@ -49,12 +49,16 @@ Args:
     loop_indices: {boundary loop: index}, how often the field turns against the boundary along it: 0 to follow it. Loops
         that are not named (and not aligned) take what turns least. Only together with `singularities`.
     align_weight: how much curvature counts against smoothness.
+    directions: (F, 3) or (V, 3) vectors that the field shall have in faces or vertices (as many as both: in faces), zero
+        where nothing is given; their part along the surface counts, their length does not.
+    weights: (F,) or (V,) as `directions`, 0 or more: 1, as without them, meets smooth directions to about a degree.
     job: progress and cancellation.
 
 Raises:
     InputError: a vertex out of range or on the boundary; an index that the symmetry lacks; indices of a component of
         another sum, telling what is missing; a stroke of another mesh; hard strokes that disagree in a face; curvature
-        for symmetry 1.
+        for symmetry 1; directions of another number, not finite, or of a face and at right angles to it; weights of
+        another number, below 0, or without directions.
     Cancelled: the job was.
 
 Notes:
@@ -204,9 +208,28 @@ FieldAlignment as_alignment(const py::object& value) {
       message("align: wanted \"none\", \"curvature\" or \"boundary\", got ", py::cast<std::string>(py::repr(value))));
 }
 
+std::vector<Vec3> as_vectors(const py::object& value, const char* argument) {
+  const ArrayIn<double> rows = as_points3(value, argument);
+  std::vector<Vec3> result(rows.values.size() / 3);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = {rows.values[3 * i], rows.values[3 * i + 1], rows.values[3 * i + 2]};
+  return result;
+}
+
+std::optional<GivenDirections> as_given(const py::object& directions, const py::object& weights) {
+  if (!weights.is_none() && directions.is_none()) throw InputError("weights: only together with directions");
+  if (directions.is_none()) return std::nullopt;
+  GivenDirections result{as_vectors(directions, "directions"), {}};
+  if (weights.is_none()) return result;
+  const ArrayIn<double> own = as_reals(weights, "weights");
+  result.weights.assign(own.values.begin(), own.values.end());
+  return result;
+}
+
 DirectionFieldOptions as_options(const Mesh& mesh, int symmetry, const py::object& singularities,
                                  const py::object& strokes, const py::object& align, const py::object& loop_indices,
-                                 const py::object& align_weight) {
+                                 const py::object& align_weight, const py::object& directions,
+                                 const py::object& weights) {
   DirectionFieldOptions options;
   if (!singularities.is_none()) {
     options.singularities.emplace();
@@ -223,6 +246,7 @@ DirectionFieldOptions as_options(const Mesh& mesh, int symmetry, const py::objec
   options.strokes = as_strokes(strokes, mesh);
   options.align = as_alignment(align);
   options.align_weight = as_real(align_weight, "align_weight");
+  options.directions = as_given(directions, weights);
   return options;
 }
 
@@ -237,9 +261,10 @@ struct Editor {
 };
 
 py::object edit(Editor& self, const py::object& singularities, const py::object& strokes, const py::object& align,
-                const py::object& loop_indices, const py::object& align_weight, const py::object& job) {
-  const DirectionFieldOptions options =
-      as_options(as_mesh(self.mesh, "mesh"), self.symmetry, singularities, strokes, align, loop_indices, align_weight);
+                const py::object& loop_indices, const py::object& align_weight, const py::object& directions,
+                const py::object& weights, const py::object& job) {
+  const DirectionFieldOptions options = as_options(as_mesh(self.mesh, "mesh"), self.symmetry, singularities, strokes,
+                                                   align, loop_indices, align_weight, directions, weights);
   const JobIn token(job);
   py::object result = py::cast(without_gil([&] {
     const std::lock_guard lock(self.mutex);
@@ -251,18 +276,16 @@ py::object edit(Editor& self, const py::object& singularities, const py::object&
 
 py::object field_of(const py::object& mesh, const py::object& symmetry, const py::object& singularities,
                     const py::object& strokes, const py::object& align, const py::object& loop_indices,
-                    const py::object& align_weight, const py::object& job) {
+                    const py::object& align_weight, const py::object& directions, const py::object& weights,
+                    const py::object& job) {
   Editor editor(mesh, as_integer(symmetry, "symmetry"));
-  return edit(editor, singularities, strokes, align, loop_indices, align_weight, job);
+  return edit(editor, singularities, strokes, align, loop_indices, align_weight, directions, weights, job);
 }
 
 py::object field_from_vectors(const py::object& mesh_object, const py::object& vectors, const py::object& symmetry) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  const ArrayIn<double> rows = as_points3(vectors, "vectors");
+  const std::vector<Vec3> directions = as_vectors(vectors, "vectors");
   const int wanted = as_integer(symmetry, "symmetry");
-  std::vector<Vec3> directions(rows.values.size() / 3);
-  for (std::size_t i = 0; i < directions.size(); ++i)
-    directions[i] = {rows.values[3 * i], rows.values[3 * i + 1], rows.values[3 * i + 2]};
   py::object result = py::cast(without_gil([&] { return field_of_vectors(mesh, wanted, directions); }));
   py::detail::keep_alive_impl(result, mesh_object);
   return result;
@@ -510,11 +533,12 @@ void bind_fields(py::module_& m) {
            py::arg("mesh"), py::arg("symmetry") = 1)
       .def("field", &edit, py::arg("singularities") = py::none(), py::arg("strokes") = py::tuple(),
            py::arg("align") = "none", py::kw_only(), py::arg("loop_indices") = py::none(),
-           py::arg("align_weight") = 1.0, py::arg("job") = py::none(), "Finds a field as `direction_field` does.");
+           py::arg("align_weight") = 1.0, py::arg("directions") = py::none(), py::arg("weights") = py::none(),
+           py::arg("job") = py::none(), "Finds a field as `direction_field` does.");
   m.def("direction_field", &field_of, py::arg("mesh"), py::arg("symmetry") = 1, py::arg("singularities") = py::none(),
         py::arg("strokes") = py::tuple(), py::arg("align") = "none", py::kw_only(),
-        py::arg("loop_indices") = py::none(), py::arg("align_weight") = 1.0, py::arg("job") = py::none(),
-        k_direction_doc);
+        py::arg("loop_indices") = py::none(), py::arg("align_weight") = 1.0, py::arg("directions") = py::none(),
+        py::arg("weights") = py::none(), py::arg("job") = py::none(), k_direction_doc);
   let_travel<DirectionField>(m, "DirectionField", &save_field, &load_field);
   let_travel<Stroke>(m, "Stroke", &save_stroke, &load_stroke);
   let_travel<StreamlinePath>(m, "Streamline");

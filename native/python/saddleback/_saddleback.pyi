@@ -964,6 +964,8 @@ class DirectionFieldEditor:
         *,
         loop_indices: Mapping[int, SupportsFloat] | None = None,
         align_weight: SupportsFloat = 1.0,
+        directions: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
         job: Job | None = None,
     ) -> DirectionField: ...
 
@@ -976,6 +978,8 @@ def direction_field(
     *,
     loop_indices: Mapping[int, SupportsFloat] | None = None,
     align_weight: SupportsFloat = 1.0,
+    directions: ArrayLike | None = None,
+    weights: ArrayLike | None = None,
     job: Job | None = None,
 ) -> DirectionField: ...
 

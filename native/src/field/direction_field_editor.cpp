@@ -13,6 +13,7 @@
 #include "field/connection/shape_operator.h"
 #include "field/connection/sharp_loops.h"
 #include "field/connection/untangle_turns.h"
+#include "field/smoothing/given_directions.h"
 #include "field/smoothing/smooth_powers.h"
 #include "field/smoothing/stroke_targets.h"
 
@@ -25,8 +26,8 @@ constexpr double k_turn = 2 * std::numbers::pi;
 /// Accuracy of the solver, which only decides how smooth fields are: they close, and meet fixed faces, exactly at any.
 constexpr MultigridSolver<double>::Accuracy k_stroke_accuracy{.residual = 1e-7};
 constexpr MultigridSolver<Complex>::Accuracy k_power_accuracy{.residual = 1e-6};
-/// Counts how often the branches of curvature directions are chosen anew after the field has turned onto them.
-constexpr int k_curvature_rounds = 3;
+/// Counts how often the branches of wanted directions are chosen anew after the field has turned onto them.
+constexpr int k_branch_rounds = 3;
 
 void check_options(const DirectionFieldOptions& options, int symmetry) {
   if (options.align == FieldAlignment::curvature && symmetry == 1)
@@ -68,6 +69,18 @@ std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double wei
   return result;
 }
 
+/// Powers of the directions that curvature and givers want, their sizes the stiffness; none where nobody does.
+std::vector<Complex> wanted_powers(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options,
+                                   const JobStage& stage) {
+  std::vector<Complex> result;
+  if (options.directions) result = powers_of_directions(mesh, symmetry, *options.directions);
+  if (options.align != FieldAlignment::curvature) return result;
+  const std::vector<Complex> bent = curvature_powers(mesh, symmetry, options.align_weight, stage);
+  if (result.empty()) return bent;
+  for (Index f = 0; f < mesh.face_count(); ++f) result[f] += bent[f];
+  return result;
+}
+
 }  // namespace
 
 struct DirectionFieldEditor::Kept {
@@ -91,8 +104,8 @@ struct DirectionFieldEditor::Kept {
   std::vector<std::vector<Index>> eager_loops(const std::vector<double>& some_turns) const;
   std::vector<double> gentle_turns(const std::vector<Index>& wanted, const JobStage& stage) const;
   void connect(const DirectionFieldOptions& options, const JobStage& stage);
-  std::vector<double> turn_onto_curvature(const FaceSprings<double>& springs, std::vector<double> turned, double weight,
-                                          const JobStage& stage) const;
+  std::vector<double> turn_onto(const std::vector<Complex>& wanted, const FaceSprings<double>& springs,
+                                std::vector<double> turned, const JobStage& stage) const;
   std::vector<double> best_constants(const std::vector<Complex>& wanted) const;
 };
 
@@ -161,13 +174,13 @@ std::vector<double> DirectionFieldEditor::Kept::best_constants(const std::vector
   return result;
 }
 
-std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(const FaceSprings<double>& springs,
-                                                                    std::vector<double> turned, double weight,
-                                                                    const JobStage& stage) const {
-  const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, weight, stage);
+/// Turns the field, by what it has turned already, onto the directions of those powers too.
+std::vector<double> DirectionFieldEditor::Kept::turn_onto(const std::vector<Complex>& wanted,
+                                                          const FaceSprings<double>& springs,
+                                                          std::vector<double> turned, const JobStage& stage) const {
   std::vector<double> vertices;
   if (turned.empty()) turned = best_constants(wanted);
-  for (int round = 0; round < k_curvature_rounds; ++round) {
+  for (int round = 0; round < k_branch_rounds; ++round) {
     FaceSprings<double> both = springs;
     for (Index f = 0; f < mesh.face_count(); ++f) {
       const double stiffness = std::abs(wanted[f]);
@@ -177,8 +190,8 @@ std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(const FaceSp
       both.target[f] = (both.stiffness[f] * both.target[f] + stiffness * target) / (both.stiffness[f] + stiffness);
       both.stiffness[f] += stiffness;
     }
-    const JobStage part = stage.part(static_cast<double>(round) / k_curvature_rounds,
-                                     static_cast<double>(round + 1) / k_curvature_rounds);
+    const JobStage part =
+        stage.part(static_cast<double>(round) / k_branch_rounds, static_cast<double>(round + 1) / k_branch_rounds);
     turned = relax_angles(mesh, connection, both, vertices, k_stroke_accuracy, part);
   }
   return turned;
@@ -186,21 +199,22 @@ std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(const FaceSp
 
 DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions& options, const JobStage& stage) {
   const bool along_boundary = options.align == FieldAlignment::boundary;
-  const bool along_curvature = options.align == FieldAlignment::curvature;
   const std::vector<StrokeFaces> strokes = stroke_faces(mesh, symmetry, options.strokes, along_boundary);
+  const std::vector<Complex> wanted = wanted_powers(mesh, symmetry, options, stage);
   connect(options, stage.part(0, 0.6));
 
   std::vector<double> turned_angles = angles, turned_turns = turns;
   std::vector<bool> fixed(mesh.face_count(), false);
-  if (!strokes.empty() || along_curvature) {
+  if (!strokes.empty() || !wanted.empty()) {
     const FaceSprings<double> springs = turning_springs(mesh, symmetry, angles, strokes);
     stage.check();
     std::vector<double> turned;
     if (!strokes.empty())
       turned = relax_angles(mesh, connection, springs, shift, k_stroke_accuracy,
-                            stage.part(0.6, along_curvature ? 0.75 : 0.95));
-    if (along_curvature)
-      turned = turn_onto_curvature(springs, std::move(turned), options.align_weight, stage.part(0.75, 0.95));
+                            stage.part(0.6, wanted.empty() ? 0.95 : 0.75));
+    if (options.directions)
+      turned = turns_towards(mesh, connection, symmetry, angles, wanted, springs, k_power_accuracy, stage);
+    if (!wanted.empty()) turned = turn_onto(wanted, springs, std::move(turned), stage.part(0.75, 0.95));
     for (Index f = 0; f < mesh.face_count(); ++f) {
       turned_angles[f] += turned[f];
       fixed[f] = springs.stiffness[f] == k_fixed;
@@ -218,8 +232,7 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
   const std::vector<StrokeFaces> strokes =
       stroke_faces(mesh, symmetry, options.strokes, options.align == FieldAlignment::boundary);
   FaceSprings<Complex> springs = power_springs(mesh, symmetry, strokes);
-  if (options.align == FieldAlignment::curvature) {
-    const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, options.align_weight, stage);
+  if (const std::vector<Complex> wanted = wanted_powers(mesh, symmetry, options, stage); !wanted.empty()) {
     for (Index f = 0; f < mesh.face_count(); ++f) {
       const double stiffness = std::abs(wanted[f]), both = stiffness + springs.stiffness[f];
       if (stiffness == 0 || both == k_fixed) continue;

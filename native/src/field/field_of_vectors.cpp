@@ -1,29 +1,25 @@
 // A field from directions that somebody else made: combed hair, a flow painted on faces.
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "saddleback/error.h"
 #include "saddleback/field/direction_field.h"
 
 #include "field/connection/surface_connection.h"
-#include "support/hypotenuse.h"
+#include "field/smoothing/given_directions.h"
 
 namespace saddleback {
 namespace {
 
-// Less of a vector's length than this is rounding of a vector that stands on its face.
-constexpr double k_least_part = 1e-9;
-
 /// The part of a vector within a face as an angle in the face's chart.
 double angle_within(const Mesh& mesh, Index face, const Vec3& vector) {
-  const Vec3 along = direction_in_space(mesh, face, 0);
-  const Vec3 across = direction_in_space(mesh, face, std::numbers::pi / 2);
-  const double x = vector.dot(along), y = vector.dot(across);
+  const std::complex<double> part = part_within(mesh, face, vector);
   if (!vector.allFinite()) throw InputError(message("vectors: the one of face ", face, " is not finite"));
-  if (!(hypotenuse(x, y) > k_least_part * vector.norm()))
+  if (!has_part_within(part, vector))
     throw InputError(message("vectors: the one of face ", face, " has no direction within the face"));
-  return std::atan2(y, x);
+  return std::arg(part);
 }
 
 }  // namespace

@@ -88,6 +88,14 @@ struct Stroke {
   double weight = 1;
 };
 
+/// Directions that the field shall have in some places: one vector for each face or for each vertex (as many as both:
+/// of faces), zero where nothing is given; lengths do not count. They pull as springs of their weight: 1 meets smooth
+/// ones to about a degree.
+struct GivenDirections {
+  std::vector<Vec3> vectors;    ///< (F,) or (V,)
+  std::vector<double> weights;  ///< as many, 0 or more; none for 1 everywhere
+};
+
 enum class FieldAlignment : std::uint8_t {
   none,
   curvature,  ///< lines along the least bent direction, crosses along both principal directions
@@ -101,6 +109,7 @@ struct DirectionFieldOptions {
   /// singularities.
   std::vector<std::optional<Index>> loop_units;
   std::vector<Stroke> strokes;
+  std::optional<GivenDirections> directions;
   FieldAlignment align = FieldAlignment::none;
   double align_weight = 1;  ///< how much curvature counts against smoothness
 };
@@ -116,13 +125,14 @@ class DirectionFieldEditor {
   DirectionFieldEditor& operator=(DirectionFieldEditor&&) noexcept;
 
   /// Finds, when there are singularities, the trivial connection that has exactly those [crane2010], to which strokes
-  /// add a single-valued turning only, so that no stroke can change an index. Without: the smoothest field, or the one
-  /// nearest to strokes and alignment, with the singularities that it then has [knoppel2013]. Without anything that
-  /// fixes it, the angle in the smallest face of a component is 0.
+  /// and given directions add a single-valued turning only, so that none can change an index. Without: the smoothest
+  /// field, or the one nearest to strokes, given directions and alignment, with the singularities that it then has
+  /// [knoppel2013]. Without anything that fixes it, the angle in the smallest face of a component is 0.
   /// \throw InputError for a vertex out of range, on the boundary or named twice; indices that do not sum to the Euler
   /// characteristic of their component (naming it and what is missing); a stroke of another mesh or a weight that is
-  /// not positive and finite; hard strokes that disagree in a face, with others or themselves; curvature for symmetry
-  /// 1. Cancelled. About O(F).
+  /// not positive and finite; hard strokes that disagree in a face, with others or themselves; another number of
+  /// directions than faces or vertices, or of weights, one that is not finite or stands on its face, a weight below 0;
+  /// curvature for symmetry 1. Cancelled. About O(F).
   DirectionField field(const DirectionFieldOptions& options = {}, Job* job = nullptr);
   /// Does the same as a part of other work.
   DirectionField field(const DirectionFieldOptions& options, const JobStage& stage);

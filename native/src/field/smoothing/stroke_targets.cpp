@@ -13,9 +13,6 @@ namespace saddleback {
 namespace {
 
 constexpr double k_turn = 2 * std::numbers::pi;
-/// Stiffness of a soft stroke of weight 1 that runs right through a face, against about 1.7 to each neighbor: fields
-/// meet such strokes to within a degree or two.
-constexpr double k_stroke_stiffness = 30;
 /// Bounds the difference of two hard strokes in a face that agree: the rounding of curves drawn twice.
 constexpr double k_agreement = 1e-6;
 
@@ -65,7 +62,7 @@ StrokeFaces faces_of(const Mesh& mesh, const Stroke& stroke, std::size_t number,
   for (StrokeFace& face : result) {
     const double size = std::sqrt(2 * mesh.face_area(face.face));
     face.stiffness =
-        stroke.is_hard ? k_fixed : k_stroke_stiffness * stroke.weight * std::min(1.0, face.stiffness / size);
+        stroke.is_hard ? k_fixed : k_drawn_stiffness * stroke.weight * std::min(1.0, face.stiffness / size);
   }
   return result;
 }
@@ -80,7 +77,7 @@ StrokeFaces faces_of_loop(const Mesh& mesh, const std::vector<Index>& loop, int 
     ++edges[Mesh::face_of(h)];
   }
   StrokeFaces result = faces.take();
-  for (StrokeFace& face : result) face.stiffness = edges[face.face] == 1 ? k_fixed : k_stroke_stiffness;
+  for (StrokeFace& face : result) face.stiffness = edges[face.face] == 1 ? k_fixed : k_drawn_stiffness;
   return result;
 }
 
