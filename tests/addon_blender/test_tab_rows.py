@@ -122,7 +122,15 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
         "distance": {"sources_group", "sources_collection", "sources_object", "isoline_spacing"},
         "path": {"points_group", "points_collection", "connect", "from_cursor"},
         "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},
-        "direction_field": {"strokes_object", "strokes_collection", "singularities_collection", "align_weight"},
+        "direction_field": {
+            "strokes_object",
+            "strokes_collection",
+            "singularities_collection",
+            "align_weight",
+            "painted_attribute",
+            "painted_color",
+            "painted_image",
+        },
         "distribute": {
             "shapes_collection",
             "shapes_image",

@@ -15,6 +15,7 @@ from . import native
 from .cache import Cache
 from .errors import BadInputError
 from .fields.field_strokes import reach_of, strokes_of
+from .fields.given_fields import painted_directions
 from .fields.stream_lines import even_streamlines
 from .graphs import mesh_of_surface
 from .progress import Progress
@@ -94,7 +95,7 @@ class MadeField:
 
 def field_of(request: DirectionFieldRequest, mesh: Any, progress: Progress, cache: Cache) -> MadeField:
     """The library's field as the settings ask for it; what an earlier run found out is used again."""
-    settings, surface = request.settings, request.surface
+    settings, surface, painted = request.settings, request.surface, request.painted
     symmetry = int(settings.symmetry)
     if settings.align == "CURVATURE" and symmetry == 1:
         raise BadInputError(
@@ -105,6 +106,7 @@ def field_of(request: DirectionFieldRequest, mesh: Any, progress: Progress, cach
         symmetry, settings.align, settings.align_weight, settings.stroke_weight, settings.stroke_reach,
         settings.hard_strokes, settings.turn, indices,
         *(part for line in request.strokes for part in (line.points, line.closed, line.hard)),
+        *((painted.vectors, painted.symmetry, painted.polygons, settings.painted_weight) if painted else ()),
     )  # fmt: skip
     faces = len(mesh.triangles)
 
@@ -116,11 +118,14 @@ def field_of(request: DirectionFieldRequest, mesh: Any, progress: Progress, cach
         )
         with progress.stage(0.2, "bringing strokes to the surface"):
             drawn = strokes_of(request, mesh)
+        directions = painted_directions(surface, painted, mesh) if painted else None
+        weights = np.full(faces, settings.painted_weight) if painted else None
         with progress.stage(0.8, "combing the surface") as job:
             try:
                 field = editor.field(
-                    indices, drawn.strokes, settings.align.lower(), align_weight=settings.align_weight, job=job
-                )
+                    indices, drawn.strokes, settings.align.lower(), align_weight=settings.align_weight,
+                    directions=directions, weights=weights, job=job,
+                )  # fmt: skip
             except native.load().InputError as error:
                 raise BadInputError(f"'{surface.name}': {_told(str(error), drawn.labels)}") from error
         return MadeField(field.turned(settings.turn) if settings.turn else field, drawn.followed, drawn.left_out)

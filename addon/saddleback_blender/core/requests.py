@@ -245,6 +245,16 @@ class PathRequest:
 
 
 @dataclass(frozen=True)
+class GivenDirections:
+    """A vector attribute: directions in the world on the Blender mesh's vertices, or on its polygons."""
+
+    vectors: Reals  # (V, 3) or (polygons, 3)
+    symmetry: int
+    label: str  # for messages
+    polygons: Indices | None = None  # (F,) polygon of each triangle, where the vectors are on polygons
+
+
+@dataclass(frozen=True)
 class DirectionFieldRequest:
     """One field of directions."""
 
@@ -253,16 +263,7 @@ class DirectionFieldRequest:
     strokes: tuple[StrokeLine, ...] = ()
     singularities: tuple[SingularPlace, ...] | None = None  # None: the field chooses them
     polygons: Indices | None = None  # (F,) polygon that each triangle is part of; of the domain FACE
-
-
-@dataclass(frozen=True)
-class GivenDirections:
-    """A vector attribute: directions in the world on the Blender mesh's vertices, or on its polygons."""
-
-    vectors: Reals  # (V, 3) or (polygons, 3)
-    symmetry: int
-    label: str  # for messages
-    polygons: Indices | None = None  # (F,) polygon of each triangle, where the vectors are on polygons
+    painted: GivenDirections | None = None  # followed where there are any
 
 
 @dataclass(frozen=True)

@@ -216,6 +216,11 @@ class DirectionFieldSettings:
     hard_strokes: bool = False  # all of them, not only those with "hard" in their name
     stroke_weight: float = 1.0  # of soft ones
     stroke_reach: float = 0.0  # what of a stroke is farther from the surface is left out; 0 = by the surface's extent
+    painted: str = "NONE"  # NONE, ATTRIBUTE, COLOR, IMAGE
+    painted_attribute: str = ""
+    painted_color: str = ""  # "" = the active one
+    painted_image: str = ""
+    painted_weight: float = 1.0
     singularities: str = "AUTO"  # AUTO, EMPTIES
     singularities_collection: str = ""  # "" = those parented to the object
     turn: float = 0.0  # radians, counter-clockwise

@@ -11,6 +11,7 @@ from functools import partial
 import bpy
 import numpy as np
 
+from ..bridge.inputs.directions_in import read_painted
 from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
 from ..bridge.inputs.singularities_in import read_singularities
 from ..bridge.inputs.source import shared_mesh_warning
@@ -47,6 +48,7 @@ class FieldOperator(SurfaceOperator):
                 strokes=read_strokes(context, source, settings),
                 singularities=read_singularities(context, source, settings),
                 polygons=read_triangle_polygons(mesh) if settings.domain == "FACE" else None,
+                painted=read_painted(source, mesh, settings),
             )
         return partial(field_runs.direction_field, request)
 

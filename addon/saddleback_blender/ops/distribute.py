@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import prefs
 from ..bridge.inputs.density import read_density, read_vertex_group
-from ..bridge.inputs.directions_in import read_directions, read_image_flow, read_painted_flow
+from ..bridge.inputs.directions_in import read_directions, read_image_flow, read_painted, read_painted_flow
 from ..bridge.inputs.mesh_in import mesh_of
 from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
@@ -211,7 +211,11 @@ def _read_field(
         return read_image_flow(source, mesh, settings.direction_image)
     own = kept_settings(source, "direction_field", DirectionFieldSettings)
     return DirectionFieldRequest(
-        surface, own, read_strokes(context, source, own), read_singularities(context, source, own)
+        surface,
+        own,
+        read_strokes(context, source, own),
+        read_singularities(context, source, own),
+        painted=read_painted(source, mesh, own),
     )
 
 

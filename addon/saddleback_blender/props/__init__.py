@@ -60,7 +60,7 @@ COLLECTION_NAMES = (
     "density_collection",
     "shapes_collection",
 )
-IMAGE_NAMES = ("image_name", "density_image", "shapes_image", "direction_image")
+IMAGE_NAMES = ("image_name", "density_image", "shapes_image", "direction_image", "painted_image")
 TOLD, FIGURES = "told", "figures"  # on each group: what the last run said of the object, a sentence a line
 SHARED = "shared"  # in texts: the settings that all operators in a layer share
 CALL = "left_by_call"  # on each group: the values in it that a script's call has set, in JSON

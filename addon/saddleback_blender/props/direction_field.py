@@ -26,6 +26,12 @@ STROKES = (
     ("OBJECT", "Object", "The strokes of one curve or grease pencil object"),
     ("COLLECTION", "Collection", "The curves and grease pencils of a collection, or those parented to the object"),
 )
+PAINTED = (
+    ("NONE", "None", "Nothing that is painted"),
+    ("ATTRIBUTE", "Attribute", "A vector attribute of vertices or faces; zero where nothing is said"),
+    ("COLOR", "Color Attribute", "A painted flow map: red points to the right of the UV map, green upwards"),
+    ("IMAGE", "Image", "A flow map, seen through the active UV map"),
+)
 SINGULARITIES = (
     ("AUTO", "Automatic", "The field is singular where it is smoothest so"),
     ("EMPTIES", "Empties", "Where empties are: the index is their property 'index' or a number in their name"),
@@ -54,6 +60,14 @@ DIRECTION_FIELD: dict[str, Any] = {
     ),
     "stroke_reach": length(
         "Reach", "What of a stroke is farther from the surface is left out; 0 means a twentieth of its extent", 0.0
+    ),
+    "painted": choice("Painted", "Directions that the field follows where there are any", PAINTED, "NONE"),
+    "painted_attribute": name_of("Attribute", "The vectors that the field follows"),
+    "painted_color": name_of("Color Attribute", "The flow map that the field follows; empty means the active one"),
+    "painted_image": name_of("Image", "The flow map that the field follows"),
+    "painted_weight": FloatProperty(
+        name="Weight", description="How much painted directions count against smoothness", default=1.0, min=1e-3,
+        soft_max=100.0, options={"SKIP_SAVE"},
     ),
     "singularities": choice("Singularities", "Where the field turns about a point", SINGULARITIES, "AUTO"),
     "singularities_collection": name_of(

@@ -482,12 +482,12 @@ class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = active_object(context).saddleback.direction_field
+        item = active_object(context)
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.direction_field", "FORCE_WIND")
         _draw_state(layout, context, "direction_field")
         rows.draw_pens(layout)
-        rows.draw_field(layout.column(), settings)
+        rows.draw_field(layout.column(), item.saddleback.direction_field, item)
 
 
 class SADDLEBACK_PT_field_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):

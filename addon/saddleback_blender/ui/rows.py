@@ -257,7 +257,7 @@ def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
     column.prop(settings, "frame_end")
 
 
-def draw_field(layout: bpy.types.UILayout, settings: Any) -> None:
+def draw_field(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Draws what a field is made of and what it follows."""
     layout.prop(settings, "symmetry")
     layout.prop(settings, "align")
@@ -268,6 +268,13 @@ def draw_field(layout: bpy.types.UILayout, settings: Any) -> None:
         draw_object(layout, settings, "strokes_object")
     elif settings.strokes == "COLLECTION":
         draw_collection(layout, settings, "strokes_collection")
+    layout.prop(settings, "painted")
+    if settings.painted == "ATTRIBUTE":
+        layout.prop_search(settings, "painted_attribute", item.data, "attributes", text="Name", icon="SPREADSHEET")
+    elif settings.painted == "COLOR":
+        layout.prop_search(settings, "painted_color", item.data, "color_attributes", text="Name", icon="GROUP_VCOL")
+    elif settings.painted == "IMAGE":
+        draw_pointer(layout, settings, "painted_image", "images")
     layout.prop(settings, "singularities", text="Singular")
     if settings.singularities == "EMPTIES":
         draw_collection(layout, settings, "singularities_collection")
@@ -284,6 +291,9 @@ def draw_field_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
     row.active = not settings.hard_strokes
     row.prop(settings, "stroke_weight")
     draw_automatic(column, settings, "stroke_reach")
+    row = layout.row()
+    row.active = settings.painted != "NONE"
+    row.prop(settings, "painted_weight", text="Paint")
     layout.prop(settings, "seed")
     layout.prop(settings, "domain")
     draw_name(layout, settings, "direction_attribute", "Attribute")

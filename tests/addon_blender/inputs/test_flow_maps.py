@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Flow maps, painted or in images: which way shapes point by the UV map."""
+"""Flow maps, painted or in images, and vectors: which way shapes point, and what the field follows."""
 
 import bpy
 import numpy as np
 import pytest
-from scenes import add_object, fingerprint, grid_arrays
+from scenes import add_object, fingerprint, grid_arrays, sphere
 
 from saddleback_blender.bridge.inputs.directions_in import read_directions, read_image_flow, read_painted_flow
 
-FEW = {"count": 10, "packing": 0.0}
 AHEAD = (0.6, 0.8)  # to the right and upwards
+WRITTEN = "saddleback_direction"
+FEW = {"count": 10, "packing": 0.0}
 
 
 def plate(mirrored=False):
@@ -101,3 +102,76 @@ def test_what_is_not_there_is_refused():
     item.data.uv_layers.remove(item.data.uv_layers[0])
     refused("'Plate' has no UV map to tell directions by", field_source="COLOR", direction_color="Flow")
     refused("'Plate' has no UV map to tell directions by", field_source="IMAGE", direction_image="Flow")
+
+
+def add_vectors(item, name, domain, values):
+    layer = item.data.attributes.new(name, "FLOAT_VECTOR", domain)
+    layer.data.foreach_set("vector", np.ascontiguousarray(values, np.float32).ravel())
+
+
+def written(item, name=WRITTEN):
+    layer = item.data.attributes[name]
+    values = np.empty(3 * len(layer.data), np.float32)
+    layer.data.foreach_get("vector", values)
+    return values.reshape(-1, 3)
+
+
+@pytest.mark.parametrize("domain", ["POINT", "FACE"])
+@pytest.mark.parametrize("singularities", ["AUTO", "EMPTIES"])
+def test_a_field_follows_the_half_that_is_said(domain, singularities):
+    item = sphere(subdivisions=4)
+    if singularities == "EMPTIES":
+        for name, place in (("North", (0, 0, 1)), ("South", (0, 0, -1))):
+            empty = bpy.data.objects.new(name, None)
+            bpy.context.scene.collection.objects.link(empty)
+            empty.parent, empty.location = item, place
+        bpy.context.view_layer.update()
+    places = (
+        np.array([vertex.co for vertex in item.data.vertices])
+        if domain == "POINT"
+        else np.array([polygon.center for polygon in item.data.polygons])
+    )
+    east = np.cross((0.0, 0.0, 1.0), places)
+    said = (places[:, 0] > 0.3) & (abs(places[:, 2]) < 0.7)
+    add_vectors(item, "wanted", domain, np.where(said[:, None], east, 0.0))
+    call = {"painted": "ATTRIBUTE", "painted_attribute": "wanted", "domain": domain, "singularities": singularities}
+    assert bpy.ops.saddleback.direction_field(**call) == {"FINISHED"}
+    north = np.cross(places, east)  # vectors at vertices lie in a face's plane: what leans outward does not count
+    found = written(item)
+    off = np.arctan2((found * north).sum(axis=1), (found * east).sum(axis=1))
+    assert abs(np.degrees(off[said])).mean() < 1
+    before = written(item)
+    bpy.ops.saddleback.direction_field(**call, painted_weight=1e-3)
+    assert abs(written(item) - before).max() > 1e-3
+
+
+@pytest.mark.parametrize("kind", ["COLOR", "IMAGE"])
+def test_flow_maps_comb_the_surface(kind):
+    item = plate()
+    if kind == "COLOR":
+        paint(item, "FLOAT_COLOR", "POINT")
+    else:
+        image_of()
+    name = "painted_color" if kind == "COLOR" else "painted_image"
+    assert bpy.ops.saddleback.direction_field(painted=kind, **{name: "Flow"}) == {"FINISHED"}
+    turn = np.array(item.matrix_world)[:3, :3]
+    assert np.allclose(written(item) @ turn.T, in_world(item), atol=5e-3)
+    bpy.ops.saddleback.distribute(count=10, packing=0.0)  # by the same field, which the panel says
+    assert item.saddleback.direction_field.painted == kind
+
+
+def test_what_the_field_cannot_follow_is_told():
+    item = sphere(subdivisions=2)
+    add_vectors(item, "none", "POINT", np.zeros((len(item.data.vertices), 3)))
+    add_vectors(item, "outward", "POINT", [vertex.co for vertex in item.data.vertices])
+    before = fingerprint()
+    for call, text in (
+        ({"painted": "ATTRIBUTE"}, "has no attribute '' for directions"),
+        ({"painted": "ATTRIBUTE", "painted_attribute": "none"}, "has no direction along the surface anywhere"),
+        ({"painted": "ATTRIBUTE", "painted_attribute": WRITTEN}, "would be written over attribute"),
+        ({"painted": "COLOR"}, "has no color attribute"),
+        ({"painted": "IMAGE"}, "no image is chosen for directions"),
+    ):
+        with pytest.raises(RuntimeError, match=text):
+            bpy.ops.saddleback.direction_field(**call)
+        assert fingerprint() == before

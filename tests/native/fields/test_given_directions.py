@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Directions that are given in part: met where they are, smooth elsewhere, indices kept."""
 
 from __future__ import annotations

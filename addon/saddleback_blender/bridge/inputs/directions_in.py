@@ -12,12 +12,31 @@ from ...core.errors import BadInputError
 from ...core.fields.given_fields import flow_of_polygons
 from ...core.requests import GivenDirections
 from ...core.results import Reals
+from ...core.settings import DirectionFieldSettings
 from ..outputs.out_field import SYMMETRY
 from .density import colors_of_tiles, to_vertices
 from .mesh_in import read_triangle_polygons, to_world
 from .voronoi_in import read_triangle_corners
 
 INSTEAD = "choose another field"
+
+
+def read_painted(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DirectionFieldSettings
+) -> GivenDirections | None:
+    """What the field shall follow; None for nothing. Raises BadInputError."""
+    if settings.painted == "ATTRIBUTE":
+        if settings.painted_attribute == settings.direction_attribute:
+            raise BadInputError(
+                f"'{source.name}': the field would be written over attribute '{settings.painted_attribute}', which it "
+                "follows; give one of them another name"
+            )
+        return read_directions(source, mesh, settings.painted_attribute)
+    if settings.painted == "COLOR":
+        return read_painted_flow(source, mesh, settings.painted_color)
+    if settings.painted == "IMAGE":
+        return read_image_flow(source, mesh, settings.painted_image)
+    return None
 
 
 def read_directions(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> GivenDirections:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import native
 from ..errors import BadInputError
@@ -17,17 +18,35 @@ LEAST = 1e-6  # of the longest vector: shorter ones are no direction
 
 def given_field(surface: Surface, given: GivenDirections, mesh: Any) -> Any:
     """The field of the vectors; faces without one are told. Raises BadInputError."""
-    vectors = _of_faces(surface, given, mesh)
-    normals = _face_normals(mesh)
-    within = vectors - np.einsum("ij,ij->i", vectors, normals)[:, None] * normals
-    lengths = np.linalg.norm(within, axis=1)
-    bad = ~np.isfinite(lengths) | ~(lengths > LEAST * max(float(np.nanmax(lengths, initial=0.0)), 1e-30))
+    within, bad = _within_faces(surface, given, mesh)
     if bad.any():
         raise BadInputError(
             f"'{surface.name}': {given.label} has no direction along the surface on {int(bad.sum())} of {len(bad)} "
             "faces; fill it, or let the Direction Field panel make the field"
         )
     return native.load().DirectionField.from_vectors(mesh, within, given.symmetry)
+
+
+def painted_directions(surface: Surface, given: GivenDirections, mesh: Any) -> Reals:
+    """(F, 3) the vectors along the faces, zero where there is none. Raises BadInputError where there is none at all."""
+    within, bad = _within_faces(surface, given, mesh)
+    if bad.all():
+        raise BadInputError(
+            f"'{surface.name}': {given.label} has no direction along the surface anywhere; paint some, or choose None"
+        )
+    within[bad] = 0.0
+    return within
+
+
+def _within_faces(surface: Surface, given: GivenDirections, mesh: Any) -> tuple[Reals, NDArray[np.bool_]]:
+    """(F, 3) the vectors' parts within the faces, and where these are no direction."""
+    vectors = _of_faces(surface, given, mesh)
+    normals = _face_normals(mesh)
+    within: Reals = vectors - np.einsum("ij,ij->i", vectors, normals)[:, None] * normals
+    lengths = np.linalg.norm(within, axis=1)
+    usable = np.isfinite(lengths)
+    longest = float(lengths[usable].max(initial=0.0))
+    return within, ~usable | ~(lengths > LEAST * max(longest, 1e-30))
 
 
 def _of_faces(surface: Surface, given: GivenDirections, mesh: Any) -> Reals:
