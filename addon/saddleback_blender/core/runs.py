@@ -366,14 +366,14 @@ def _shell(
     width = progress.choose("rib_width", settings.rib_width, RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas)))
     thickness = progress.choose("rib_thickness", settings.rib_thickness, width)
 
-    shape, is_round = RibShape(width, settings.base_height), settings.rib_profile == "ROUND"
+    shape, is_round = RibShape(width, settings.base_height, thickness), settings.rib_profile == "ROUND"
 
     def build() -> LampShell:
         with progress.stage(0.95, "making the ribs of the lamp shell"):
             ribs = rib_surface(request.surface.name, mesh, solved.cells, shape, progress)
         return thicken(ribs, thickness, find_crossings, progress, is_round)
 
-    return cache.get(("shell", *key, digest(*astuple(shape), thickness, is_round)), build, lambda shell: shell.nbytes)
+    return cache.get(("shell", *key, digest(*astuple(shape), is_round)), build, lambda shell: shell.nbytes)
 
 
 def _edge_distance(surface: Surface, split: Any) -> Reals:

@@ -60,9 +60,18 @@ def _decimated(context: bpy.types.Context, item: bpy.types.Object, shell: LampSh
                 shell, vertices=vertices, triangles=triangles, crossing=len(crossing), feet=shell.feet[near],
                 wall=shell.wall[near], is_thinner=shell.is_thinner[near],
             )  # fmt: skip
-        kept = beside(shell.triangles, np.unique(near[triangles[crossing]]), len(shell.vertices))
+        kept = beside(shell.triangles, _within(tree, vertices[triangles[crossing]]), len(shell.vertices))
         group.add(np.flatnonzero(kept).tolist(), 1.0, "REPLACE")
     return shell
+
+
+def _within(tree: KDTree, corners: Reals) -> Indices:
+    """The vertices about triangles with corners (t, 3, 3): those within the ball around each."""
+    middles = corners.mean(axis=1)
+    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+    balls = zip(middles.tolist(), radii.tolist(), strict=True)
+    found = {number for middle, radius in balls for _, number, _ in tree.find_range(middle, radius)}
+    return np.array(sorted(found), np.int32)
 
 
 def _made(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, Indices]:

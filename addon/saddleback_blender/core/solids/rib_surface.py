@@ -19,8 +19,11 @@ from ..errors import BadInputError
 from ..progress import Progress
 from ..results import Indices, Reals
 from .boundary_distance import segment_distance
+from .cell_mesh import drop_unused
+from .directions import smooth_directions
 from .level_cut import cut_at_level, split_edges
 from .mesh_edges import border_edges
+from .sewn import sewn
 
 # Vertices nearer to the level than this share of half the width are moved off it: then the cut passes through no
 # vertex, the strip is a surface everywhere (nowhere two pieces meet in a point), and no triangle is a needle.
@@ -29,26 +32,29 @@ OFF_LEVEL = 0.05
 PAIRS = 1 << 17
 # Ribs are this many times as long as wide at most, all together; a solid has about forty triangles for each.
 MOST_STEPS = 100_000
-POSITION, DISTANCE = slice(0, 3), 3
+POSITION, DISTANCE, DIRECTION = slice(0, 3), 3, slice(4, 7)
 
 
 @dataclass(frozen=True)
 class RibShape:
-    """How wide ribs are, and up to which height above the lowest point all is solid."""
+    """How wide ribs are, up to which height above the lowest point all is solid, and how thick that is to be."""
 
     width: float
     base: float = 0.0
+    thickness: float = 0.0
 
 
 @dataclass(frozen=True)
 class RibSurface:
-    """Refined mesh: vertices (n, 3), triangles (t, 3), which of them (t,) are ribs, and how far (n,) vertices are from
-    the middle of the rib, in halves of its width.
+    """Refined mesh, of which parts that lie border on border are joined: vertices (n, 3), triangles (t, 3), which of
+    them (t,) are ribs, the way (n, 3) in which the surface is thickened, and how far (n,) vertices are from the middle
+    of the rib, in halves of its width.
     """
 
     vertices: Reals
     triangles: Indices
     is_rib: NDArray[np.bool_]
+    direction: Reals
     across: Reals
 
 
@@ -88,10 +94,18 @@ def rib_surface(name: str, mesh: Any, cells: Any, shape: RibShape, progress: Pro
     fields[~np.isfinite(fields[:, DISTANCE]), DISTANCE] = 2 * width
     level_off(fields, DISTANCE, level)
     progress.check()
+    # Directions are mixed along edges: those of the small triangles that the cut makes would cross each other.
+    triangles = sewn(fields[:, POSITION], triangles)
+    progress.check()
+    fields = np.column_stack([fields, smooth_directions(fields[:, POSITION], triangles, shape.thickness, progress)])
+    progress.check()
     cut = cut_at_level(fields, triangles, DISTANCE, level)
     progress.check()
-    is_rib = cut.fields[cut.triangles, DISTANCE].min(axis=1) < level
-    return RibSurface(cut.fields[:, POSITION], cut.triangles, is_rib, cut.fields[:, DISTANCE] / level)
+    fields, triangles = drop_unused(cut.fields, cut.triangles)
+    is_rib = fields[triangles, DISTANCE].min(axis=1) < level
+    way = fields[:, DIRECTION]
+    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), np.finfo(np.float64).tiny)
+    return RibSurface(fields[:, POSITION], triangles, is_rib, way, fields[:, DISTANCE] / level)
 
 
 def level_off(fields: Reals, column: int, level: float) -> None:

@@ -20,7 +20,6 @@ from .level_cut import cut_at_level
 from .mesh_edges import border_edges
 from .rib_surface import RibSurface, level_off
 from .room import FindCrossings, Solid, beside, fit
-from .sewn import sewn
 
 THINNER, LEAST_SHARE, PATIENCE = 0.6, 1e-5, 20
 ACROSS = 6  # after place and direction: how far from the middle of the rib, in halves of its width
@@ -35,15 +34,11 @@ FOLDED_AFTER = 5
 def thicken(
     ribs: RibSurface, thickness: float, find_crossings: FindCrossings, progress: Progress, is_round: bool = False
 ) -> LampShell:
-    """The solid, half the thickness to either side of the surface, of which parts that lie border on border are
-    joined. Round ribs are half ellipses to either side, but for a low wall at their sides.
+    """The solid, half the thickness to either side of the surface. Round ribs are half ellipses to either side, but for
+    a low wall at their sides.
     """
-    surface = sewn(ribs.vertices, ribs.triangles)
-    progress.check()
-    direction = smooth_directions(ribs.vertices, surface, thickness, progress)
-    fields, triangles = np.column_stack([ribs.vertices, direction, ribs.across]), surface[ribs.is_rib]
+    fields, triangles = np.column_stack([ribs.vertices, ribs.direction, ribs.across]), ribs.triangles[ribs.is_rib]
     for share in ROUND_LINES if is_round else ():
-        # Directions are mixed along edges: those of new small triangles would cross each other.
         progress.check()
         level_off(fields, ACROSS, share)
         cut = cut_at_level(fields, triangles, ACROSS, share)
