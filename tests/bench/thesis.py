@@ -36,7 +36,9 @@ def row(item: items.Item) -> str:
     items.used.clear()
     answer = item.run()
     pictures = "".join(f" ![{item.name}](thesis/{name})" for name in answer.pictures)
-    stands = "".join(f" **{items.replaced[n]} stands in for {n}.**" for n in sorted(items.used & set(items.replaced)))
+    stands = "".join(
+        f" **{items.replaced[n].capitalize()} stands in for {n}.**" for n in sorted(items.used & set(items.replaced))
+    )
     return f"| **{item.name}.** {item.shows} | {answer.ours}{pictures} | {answer.differs}{stands} |"
 
 
