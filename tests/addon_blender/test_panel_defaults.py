@@ -13,7 +13,7 @@ from saddleback_blender.core.settings import DistanceSettings, PathSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
 from saddleback_blender.ops.path import SADDLEBACK_OT_path
 from saddleback_blender.props import old_files
-from saddleback_blender.ui import panels
+from saddleback_blender.ui import panel_parts, tessellate_panels
 
 QUICK = {"count": 40, "iterations": 2, "k": 30}
 
@@ -165,9 +165,9 @@ def test_what_a_run_said_belongs_to_its_object_and_is_kept_in_the_file(tmp_path)
 
 def test_the_panels_are_gone_when_the_library_is(monkeypatch):
     item = sphere()
-    panel = panels.SADDLEBACK_PT_tessellate
+    panel = tessellate_panels.SADDLEBACK_PT_tessellate
     assert panel.poll(bpy.context) and item is not None
-    monkeypatch.setattr(panels, "_native_problem", lambda: "the library does not load")
+    monkeypatch.setattr(panel_parts, "native_problem", lambda: "the library does not load")
     assert not panel.poll(bpy.context)
 
 

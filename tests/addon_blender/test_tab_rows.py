@@ -16,6 +16,7 @@ from saddleback_blender.ops.tessellate import SADDLEBACK_OT_tessellate
 from saddleback_blender.ops.voronoi_2d import SADDLEBACK_OT_voronoi_2d
 from saddleback_blender.props import BEGIN, PROPERTIES
 from saddleback_blender.ui import menus, panels
+from saddleback_blender.ui.panel_parts import SaddlebackPanel
 from tests import synthetic_cells
 
 MOST_SETTINGS = 10
@@ -102,7 +103,7 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
                 group.density_source = source
             if unit:
                 group.lengths = unit
-            for panel in (panel for panel in panels.CLASSES if panel.__module__ == panels.__name__):
+            for panel in (panel for panel in panels.CLASSES if issubclass(panel, SaddlebackPanel)):
                 closed = set(getattr(panel, "bl_options", set()))
                 panel.bl_options = set()
                 try:

@@ -64,6 +64,11 @@ def _draw_held(layout: bpy.types.UILayout, settings: Any) -> None:
 def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Draws what says where cells are small."""
     layout.prop(settings, "density_source", text="Source")
+    draw_density_of_source(layout, settings, item)
+
+
+def draw_density_of_source(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """Draws what the chosen source of density asks for."""
     source = settings.density_source
     if source in DENSITY_LISTS:
         name, icon = DENSITY_LISTS[source]
