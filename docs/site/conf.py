@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: MIT
 """The reference site, which docs/site/build makes of docs/. https://www.sphinx-doc.org tells of the settings."""
 
+import ast
 import os
 import re
+import sys
 from pathlib import Path
 
 import tomllib
 
 DOCS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(DOCS.parent))
+from tests.tooling.signatures import STUB, functions
+
 PROJECT = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 project = "Saddleback"
@@ -103,7 +108,26 @@ def as_written(app: object, what: str, name: str, obj: object, options: object, 
     lines[:] = [re.sub(r"^:type: (.*)$", r"``\1``", line).replace("|", r"\|") for line in lines]
 
 
+TYPED = functions()
+ALIASES = dict(re.findall(r"^(_\w+): TypeAlias = (.*?)(?:  #.*)?$", STUB.read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def typed(
+    app: object, what: str, name: str, obj: object, options: object, signature: str, returns: str
+) -> tuple[str, str | None] | None:
+    """Show the stub's types, for the compiled module knows of objects alone."""
+    node = TYPED.get(name.removeprefix("saddleback."))
+    if node is None or what not in ("function", "method"):
+        return None
+    given = re.sub(r"^self(, )?", "", ast.unparse(node.args))
+    found = ast.unparse(node.returns) if node.returns else None
+    while re.search(r"\b_[A-Z]\w+", given + (found or "")):  # aliases may hold others
+        given, found = (text and re.sub(r"\b_[A-Z]\w+", lambda m: ALIASES[m[0]], text) for text in (given, found))
+    return f"({given})", found
+
+
 def setup(app) -> None:
-    """Connect the two functions above; Sphinx calls this."""
+    """Connect the functions above; Sphinx calls this."""
     app.connect("source-read", read)
+    app.connect("autodoc-process-signature", typed)
     app.connect("autodoc-process-docstring", as_written, priority=900)  # after napoleon
