@@ -77,6 +77,14 @@ class Inputs:
         return sb.SaddleVertexGraph(self.mesh, threads=2)
 
     @functools.cached_property
+    def parts(self) -> list[bytes]:
+        return [sb.find_arcs(self.mesh, part, 2, threads=2) for part in range(2)]
+
+    @functools.cached_property
+    def across(self) -> list[bytes]:
+        return [sb.arcs_across(self.parts[1], 0)]
+
+    @functools.cached_property
     def corners(self) -> Any:
         """A place in a UV map for each corner of a triangle: squares side by side, two triangles in each."""
         side = int(np.ceil(np.sqrt(self.mesh.face_count / 2)))
@@ -258,6 +266,11 @@ def calls(at: Inputs) -> dict[str, Call]:
         "SaddleVertexGraph": lambda **more: sb.SaddleVertexGraph(at.mesh, **more),
         "SaddleVertexGraph.save": lambda: at.graph.save(str(at.folder / f"{os.getpid()}.graph")),
         "SaddleVertexGraph.load": lambda: sb.SaddleVertexGraph.load(at.saved, at.mesh),
+        "SaddleVertexGraph.check": lambda: sb.SaddleVertexGraph.load(at.saved, at.mesh, mmap=True).check(),
+        "SaddleVertexGraph.from_parts": lambda **more: sb.SaddleVertexGraph.from_parts(at.mesh, at.parts, **more),
+        "find_arcs": lambda **more: sb.find_arcs(at.mesh, 1, 3, **more),
+        "arcs_across": lambda: sb.arcs_across(at.parts[0], 1),
+        "unite_arcs": lambda **more: sb.unite_arcs(at.parts[0], at.across, **more),
         "SaddleVertexGraph.distances": lambda: at.graph.distances(at.few),
         "SaddleVertexGraph.nearest": lambda: at.graph.nearest(at.few),
         "SaddleVertexGraph.fields": lambda **more: at.graph.fields(at.few, **more),

@@ -35,6 +35,7 @@ void bind_states(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
+void bind_graph_parts(py::module_& m);
 void bind_relaxation(py::module_& m);
 void bind_tessellation(py::module_& m);
 void bind_dual_mesh(py::module_& m);
@@ -161,6 +162,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_surface(m);
   bind_exact(m);
   bind_graph(m);
+  bind_graph_parts(m);
   bind_paths(m);
   bind_cell_polygons(m);
   bind_dual_mesh(m);

@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 MAGIC = b"\x89SVGr\r\n\x1a"
-# magic, version, header bytes, file bytes, mesh fingerprint, vertices, faces, arcs, k, flags, accuracy, build seconds,
-# target bits, least exponent, quantum
-HEADER = struct.Struct("<8sIIQQQQQIIddiid")
+# magic, version, header bytes, file bytes, mesh fingerprint, vertices, faces, arcs, k, flags, accuracy, longest path,
+# longest arc, target bits, least exponent, quantum
+FIELDS_OF_HEADER = struct.Struct("<8sIIQQQQQIIdddiid")
+HEADER = struct.Struct("112s")  # those, their checksum, and four zeros
 FIELDS = (
     "magic", "version", "header_bytes", "file_bytes", "fingerprint", "vertex_count", "face_count", "arc_count", "k",
-    "flags", "accuracy", "build_seconds", "target_bits", "least_exponent", "quantum",
+    "flags", "accuracy", "longest_path", "longest_arc", "target_bits", "least_exponent", "quantum",
 )  # fmt: skip
 
 
@@ -34,7 +35,7 @@ class GraphFile:
 
     @classmethod
     def of(cls, contents: bytes) -> GraphFile:
-        header = dict(zip(FIELDS, HEADER.unpack(contents[: HEADER.size]), strict=True))
+        header = dict(zip(FIELDS, FIELDS_OF_HEADER.unpack(contents[: FIELDS_OF_HEADER.size]), strict=True))
         count, size = int(header["vertex_count"]), HEADER.size
         return cls(
             header,
@@ -64,8 +65,17 @@ class GraphFile:
     def bytes(self) -> bytes:
         body = self.vertices.tobytes() + self.degrees.tobytes() + self.arcs.tobytes() + self.behind
         size = {"file_bytes": HEADER.size + len(body) + 4, "arc_count": len(self.arcs)}
-        header = HEADER.pack(*(({**self.header, **size, **self.fixed})[name] for name in FIELDS))
-        return with_checksum(header + body)
+        header = FIELDS_OF_HEADER.pack(*(({**self.header, **size, **self.fixed})[name] for name in FIELDS))
+        return with_checksum(with_checksum(header) + bytes(4) + body)
+
+    def bytes_of_version_1(self) -> bytes:
+        """As older libraries wrote it: the seconds of the build in its header, and no lengths."""
+        size = HEADER.size - 16
+        old = self.with_header(version=1, header_bytes=size, longest_path=0.25).bytes()
+        longest_arc, checksum = FIELDS_OF_HEADER.size - 24, FIELDS_OF_HEADER.size
+        length = (len(old) - 16).to_bytes(8, "little")
+        fields = old[:16] + length + old[24:longest_arc] + old[longest_arc + 8 : checksum]
+        return with_checksum(fields + old[HEADER.size : -4])
 
 
 def with_checksum(contents: bytes) -> bytes:

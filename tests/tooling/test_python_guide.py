@@ -45,6 +45,7 @@ PAGES: dict[str, tuple[str, dict[str, str]]] = {
         {},
     ),
     "exchange": (LIZARD, {}),
+    "machines": (LIZARD, {}),
     "shapes": (
         "mesh = sb.Mesh(*meshes.icosphere(4))\n"
         "curve = sb.trace(mesh, 60, 0.3, 0.5)\n"

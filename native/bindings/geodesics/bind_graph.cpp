@@ -4,18 +4,12 @@
 #include "convert/devices.h"
 #include "convert/points.h"
 #include "geodesics/bind_queries.h"
+#include "geodesics/graph_options.h"
 
 namespace saddleback::bindings {
-namespace {
-
-std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
-                                              const py::object& accuracy, bool exact, const py::object& threads,
-                                              const std::string& device, const std::string& instructions,
-                                              const py::object& job, bool pinned) {
-  const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  SaddleVertexGraphOptions options{
-      .exact = exact, .threads = as_integer(threads, "threads"), .is_pinned = pinned, .instructions = instructions};
-  // Zero is the library's word for "not given".
+// Zero is the library's word for "not given".
+SaddleVertexGraphOptions graph_options(const py::object& k, const py::object& accuracy) {
+  SaddleVertexGraphOptions options;
   if (!k.is_none()) {
     options.k = as_integer(k, "k");
     if (options.k == 0) throw InputError("k: wanted at least 1 vertex per geodesic disk, got 0");
@@ -28,6 +22,21 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
           "distances");
     }
   }
+  return options;
+}
+
+namespace {
+
+std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
+                                              const py::object& accuracy, bool exact, const py::object& threads,
+                                              const std::string& device, const std::string& instructions,
+                                              const py::object& job, bool pinned) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  SaddleVertexGraphOptions options = graph_options(k, accuracy);
+  options.exact = exact;
+  options.threads = as_integer(threads, "threads");
+  options.is_pinned = pinned;
+  options.instructions = instructions;
   const JobIn token(job);
   return run_on(device, !exact && mesh.vertex_count() >= k_vertices_worth_a_device,
                 [&](const std::vector<int>& devices) {
@@ -42,11 +51,20 @@ void save(const SaddleVertexGraph& graph, const py::object& path, const py::obje
   without_gil([&] { graph.save(file, token); });
 }
 
-std::unique_ptr<SaddleVertexGraph> load(const py::object& path, const py::object& mesh_object, const py::object& job) {
+std::unique_ptr<SaddleVertexGraph> load(const py::object& path, const py::object& mesh_object, bool mmap,
+                                        const py::object& job) {
   const std::string file = as_path(path, "path");
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const JobIn token(job);
-  return without_gil([&] { return std::make_unique<SaddleVertexGraph>(SaddleVertexGraph::load(file, mesh, token)); });
+  return without_gil([&] {
+    return std::make_unique<SaddleVertexGraph>(mmap ? SaddleVertexGraph::open(file, mesh, token)
+                                                    : SaddleVertexGraph::load(file, mesh, token));
+  });
+}
+
+void check(const SaddleVertexGraph& graph, const py::object& job) {
+  const JobIn token(job);
+  without_gil([&] { graph.check_file(token); });
 }
 
 constexpr const char* k_graph_doc = R"(Saddle Vertex Graph: geodesic distances as shortest paths in a sparse graph.
@@ -100,7 +118,8 @@ Geodesic Graphs, ACM Transactions on Graphics 39(2), 2020.)";
 
 constexpr const char* k_save_doc = R"(Write the graph to a file, without its mesh.
 
-The file is written beside its place and moved there when it is whole: until then an old one stays as it was.
+The file is written beside its place and moved there when it is whole: until then an old one stays as it was. Its bytes
+depend on the graph alone.
 
 Parameters
 ----------
@@ -127,6 +146,11 @@ Parameters
 path : str or os.PathLike
 mesh : Mesh
     With the positions and triangles of the one that the graph was built for.
+mmap : bool
+    Map the file into memory instead of reading it: the system brings what queries read, and programs that map the same
+    file share it. Rows of arcs are looked at when they are read first, so that a damaged file leads nowhere; what only
+    the whole of it tells, `check` finds. The file may be replaced, but must not be changed in place. Files of older
+    versions are read.
 job : Job, optional
 
 Returns
@@ -142,7 +166,26 @@ Cancelled
 
 Notes
 -----
-O(arcs), far less than building takes.)";
+O(arcs), far less than building takes; O(V) with mmap, and pages of the file in place of memory.)";
+
+constexpr const char* k_check_doc = R"(Check a graph that was loaded with mmap=True as if it had been read.
+
+Its checksum is summed, and all of its numbers are looked at. Other graphs have been checked, or were built.
+
+Parameters
+----------
+job : Job, optional
+
+Raises
+------
+InputError
+    The file is damaged.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(arcs).)";
 
 }  // namespace
 
@@ -153,8 +196,9 @@ void bind_graph(py::module_& m) {
            py::arg("device") = "auto", py::arg("instructions") = "auto", py::arg("job") = py::none(),
            py::arg("pinned") = false, py::keep_alive<1, 2>())
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
-      .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(),
-                  py::keep_alive<0, 2>(), k_load_doc)
+      .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("mmap") = false,
+                  py::arg("job") = py::none(), py::keep_alive<0, 2>(), k_load_doc)
+      .def("check", &check, py::kw_only(), py::arg("job") = py::none(), k_check_doc)
       .def_property_readonly("mesh", &SaddleVertexGraph::mesh, py::return_value_policy::reference, "The Mesh.")
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
       .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
@@ -182,7 +226,8 @@ void bind_graph(py::module_& m) {
           },
           "Seconds of the device's part by its own clock (upload, find, unite, download), and the numbers of sources "
           "that were done in a second pass and by the processor; None when no device built it.")
-      .def_property_readonly("build_seconds", &SaddleVertexGraph::build_seconds, "Time of the build.")
+      .def_property_readonly("build_seconds", &SaddleVertexGraph::build_seconds,
+                             "Time of the build; 0 when it was loaded.")
       .def("__repr__", [](const SaddleVertexGraph& graph) {
         const std::string how = graph.is_exact() ? "exact"
                                 : graph.k() > 0  ? message("k=", graph.k())

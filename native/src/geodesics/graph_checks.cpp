@@ -29,7 +29,8 @@ class ArcChecker {
       if (mesh_.component_of(vertices_[target]) != mesh_.component_of(vertices_[node]))
         refuse(node, message("leads to node ", target, " of another component"));
       const std::uint64_t word = arcs_.words()[arc];
-      if (!is_packed(word)) refuse(node, message("to node ", target, " has a length that is no multiple of the unit"));
+      if (!arcs_.codec().is_packed(word))
+        refuse(node, message("to node ", target, " has a length that is no multiple of the unit"));
       if (target < node) continue;
       ++upward;
       const std::int64_t reverse = arcs_.find(target, node);
@@ -46,17 +47,6 @@ class ArcChecker {
   }
 
  private:
-  /// Tells whether a word is as ArcCodec::pack leaves a word: nothing in its spare bits; a length of whole quanta, no
-  /// longer than paths are.
-  bool is_packed(std::uint64_t word) const {
-    const ArcCodec& codec = arcs_.codec();
-    const double quanta = codec.length(word) / codec.quantum();
-    if (!(quanta >= 1 && codec.length(word) <= codec.longest())) return false;
-    const std::uint64_t all = codec.length_bits(word) |
-                              static_cast<std::uint64_t>(codec.sector(word)) << codec.target_bits() |
-                              static_cast<std::uint64_t>(codec.target(word));
-    return word == all && std::floor(quanta) == quanta;
-  }
   [[noreturn]] void refuse(Index node, const std::string& what) const {
     refuse_graph_file(path_, message("an arc of node ", node, " ", what));
   }
@@ -69,6 +59,23 @@ class ArcChecker {
 };
 
 }  // namespace
+
+void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
+  if ((options.k != 0) + (options.accuracy != 0) + options.exact > 1)
+    throw InputError("k, accuracy, exact: give one of them; each says how the graph is built");
+  if (options.k < 0) throw InputError(message("k: wanted at least 1 vertex per geodesic disk, got ", options.k));
+  if (options.k > mesh.vertex_count()) {
+    throw InputError(message("k: ", options.k, " vertices per geodesic disk are more than the mesh has (",
+                             mesh.vertex_count(), ")"));
+  }
+  if (!(options.accuracy >= 0 && options.accuracy < 1)) {
+    throw InputError(
+        message("accuracy: wanted a relative error above 0 and below 1, such as 0.005 for half a percent, "
+                "got ",
+                options.accuracy));
+  }
+  if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
+}
 
 void refuse_graph_file(const std::string& path, const std::string& what) {
   throw InputError(message("path: ", path, " is a damaged graph file: ", what, "; build and save the graph again"));

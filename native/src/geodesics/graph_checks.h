@@ -1,16 +1,18 @@
 #pragma once
-// Checks whether numbers from a file describe a graph that a builder could have made.
+// Checks what a graph is to be built of, and whether numbers from a file describe one that a builder could have made.
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "saddleback/job.h"
-#include "saddleback/mesh/mesh.h"
+#include "saddleback/geodesics/saddle_vertex_graph.h"
 
 #include "geodesics/graph/arc_rows.h"
 
 namespace saddleback {
+
+/// \throw InputError unless a graph of the mesh can be built so.
+void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options);
 
 /// \throw InputError "path: PATH is a damaged graph file: WHAT; ...".
 [[noreturn]] void refuse_graph_file(const std::string& path, const std::string& what);

@@ -15,32 +15,14 @@
 #include "geodesics/graph/graph_arcs_cuda.h"
 #include "geodesics/graph/lattice.h"
 #include "geodesics/graph/path_bound.h"
+#include "geodesics/graph_checks.h"
+#include "geodesics/node_order.h"
 #include "geodesics/queries/query_cache.h"
 #include "geodesics/unfolding/arc_unfolding.h"
-#include "mesh/tables/hilbert.h"
-#include "mesh/tables/key_order.h"
 #include "support/cuda/pinned_memory.h"
-#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
-
-void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
-  if ((options.k != 0) + (options.accuracy != 0) + options.exact > 1)
-    throw InputError("k, accuracy, exact: give one of them; each says how the graph is built");
-  if (options.k < 0) throw InputError(message("k: wanted at least 1 vertex per geodesic disk, got ", options.k));
-  if (options.k > mesh.vertex_count()) {
-    throw InputError(message("k: ", options.k, " vertices per geodesic disk are more than the mesh has (",
-                             mesh.vertex_count(), ")"));
-  }
-  if (!(options.accuracy >= 0 && options.accuracy < 1)) {
-    throw InputError(
-        message("accuracy: wanted a relative error above 0 and below 1, such as 0.005 for half a percent, "
-                "got ",
-                options.accuracy));
-  }
-  if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
-}
 
 // Shares of the time in which tables are laid, until the end of each: angles unfolded, nodes ordered, tables for waves,
 // the bound of paths. The rest takes the search for a lattice.
@@ -66,9 +48,11 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const auto started = std::chrono::steady_clock::now();
   const JobStage laying = stage.part(0, k_laid);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, laying.part(0, k_unfolded));
-  order_nodes(options.threads, laying.part(k_unfolded, k_ordered));
+  NodeOrder order(mesh, options.threads, laying.part(k_unfolded, k_ordered));
+  vertices_ = std::move(order.vertices);
+  nodes_ = std::move(order.nodes);
   std::optional<WaveTables> tables;
-  if (on_device) check_mesh_size(mesh);
+  if (on_device) check_mesh_size(mesh.face_count());
   if (!exact_ && !on_device)
     tables.emplace(*unfolding_, nodes_, vertices_, options.threads, laying.part(k_ordered, k_laid_for_waves));
   const JobStage bounding = laying.part(tables ? k_laid_for_waves : k_ordered, k_bounded);
@@ -94,25 +78,15 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const JobStage finding = stage.part(k_laid, k_found);
   auto found = exact_ ? exact_arcs(search, codec, finding) : disk_arcs(search, codec, *tables, rule, finding);
   tables.reset();
-  arcs_ =
-      std::make_unique<ArcRows>(unite_with_reverses(codec, *kernel_, found, options.threads, stage.part(k_found, 1)));
+  arcs_ = std::make_unique<ArcRows>(
+      unite_with_reverses(codec, *kernel_, found, {}, options.threads, stage.part(k_found, 1)));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-}
-
-void SaddleVertexGraph::order_nodes(int threads, const JobStage& stage) {
-  const HilbertCurve curve(mesh_->positions());
-  std::vector<std::uint64_t> keys(mesh_->vertex_count());
-  parallel_for(mesh_->vertex_count(), threads, 4096, [&](Index v, int) {
-    stage.check();
-    keys[v] = curve.key(mesh_->position(v));
-  });
-  vertices_ = order_of(keys, threads, stage);
-  nodes_.resize(mesh_->vertex_count());
-  parallel_for(mesh_->vertex_count(), threads, 4096, [&](Index node, int) { nodes_[vertices_[node]] = node; });
 }
 
 SaddleVertexGraph::~SaddleVertexGraph() = default;
 SaddleVertexGraph::SaddleVertexGraph(SaddleVertexGraph&&) noexcept = default;
+
+const Unfolding& SaddleVertexGraph::unfolding() const { return unfolding_ ? *unfolding_ : queries_->unfolding(*mesh_); }
 
 std::int64_t SaddleVertexGraph::arc_count() const { return arcs_->count(); }
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import base64
 import os
 import stat
 import subprocess
@@ -46,8 +47,9 @@ def test_round_trip(case: meshes.Case, tmp_path: Path) -> None:
     graph = sb.SaddleVertexGraph(case.mesh, k=min(20, len(case.vertices)))
     graph.save(tmp_path / "a")
     loaded = sb.SaddleVertexGraph.load(tmp_path / "a", sb.Mesh(case.vertices, case.triangles))
-    for name in ("arc_count", "mean_degree", "nbytes", "k", "device", "build_seconds"):
+    for name in ("arc_count", "mean_degree", "nbytes", "k", "device"):
         assert getattr(loaded, name) == getattr(graph, name)
+    assert loaded.build_seconds == 0 < graph.build_seconds
     point = sb.SurfacePoints([len(case.triangles) // 2], [[0.2, 0.3, 0.5]])
     for sources in ([0], [1, len(case.vertices) - 1], point):
         assert np.array_equal(loaded.distances(sources), graph.distances(sources))
@@ -67,7 +69,7 @@ def test_the_format_is_what_it_says(torus: sb.SaddleVertexGraph, mesh: sb.Mesh, 
     parts = GraphFile.of(saved)
     assert parts.bytes() == saved
     header = parts.header
-    assert (header["magic"], header["version"], header["header_bytes"]) == (MAGIC, 1, HEADER.size)
+    assert (header["magic"], header["version"], header["header_bytes"]) == (MAGIC, 2, HEADER.size)
     assert (header["vertex_count"], header["face_count"]) == (len(mesh.vertices), len(mesh.triangles))
     assert (header["arc_count"], header["k"], header["flags"]) == (torus.arc_count, 20, 0)
     assert header["file_bytes"] == len(saved)
@@ -235,8 +237,39 @@ def test_foreign_files(mesh: sb.Mesh, saved: bytes, tmp_path: Path) -> None:
     path = tmp_path / "g"
     for contents in (b"", b"x", b"ply\nformat ascii 1.0\n" * 20, bytes(1000), saved[8:], saved.replace(b"\r\n", b"\n")):
         assert refusal(contents, mesh, path).startswith("is no saddleback graph; ")
-    newer = refusal(GraphFile.of(saved).with_header(version=2).bytes(), mesh, path)
-    assert newer.startswith("has version 2 of the graph format, newer than the 1 that this library reads")
+    newer = refusal(GraphFile.of(saved).with_header(version=3).bytes(), mesh, path)
+    assert newer.startswith("has version 3 of the graph format, newer than the 2 that this library reads")
+
+
+def test_bytes_depend_on_the_graph_alone(torus: sb.SaddleVertexGraph, mesh: sb.Mesh, saved: bytes, tmp_path) -> None:
+    again = sb.SaddleVertexGraph(mesh, k=20, threads=1)
+    again.save(tmp_path / "g")
+    assert again.build_seconds != torus.build_seconds
+    assert (tmp_path / "g").read_bytes() == saved
+
+
+# The graph of a tetrahedron, k=3, as version 0.1.0 saved it.
+OLD_FILE = (
+    "iVNWR3INChoBAAAAYAAAAOQAAAAAAAAAYPzowXfPwdMEAAAAAAAAAAQAAAAAAAAADAAAAAAAAAADAAAAAAAAAAAAAAAAAAAA/XHuu5GVmz8CAA"
+    "AA2f///wAAAAAAAOA8AwAAAAIAAAAAAAAAAQAAAAMAAAADAAAAAwAAAAMAAAACAACgmSeooVUBAKCZJ6ihqwIAoJknqKECAACgmSeooVcBAKCZ"
+    "J6ihqAIAoJknqKEDAACgmSeooVUBAKCZJ6ihqAIAoJknqKEBAACgmSeooVYBAKCZJ6ihqAIAoJknqKHNEQ8o"
+)
+
+
+def test_old_files_still_open(mesh: sb.Mesh, saved: bytes, tmp_path: Path) -> None:
+    path, tetrahedron = tmp_path / "g", sb.Mesh(*meshes.tetrahedron())
+    for contents, surface, graph in (
+        (base64.b64decode(OLD_FILE), tetrahedron, sb.SaddleVertexGraph(tetrahedron, k=3)),
+        (GraphFile.of(saved).bytes_of_version_1(), mesh, sb.SaddleVertexGraph(mesh, k=20)),
+    ):
+        path.write_bytes(contents)
+        graph.save(tmp_path / "new")
+        for mmap in (False, True):
+            old = sb.SaddleVertexGraph.load(path, surface, mmap=mmap)
+            old.check()
+            assert old.build_seconds == 0
+            old.save(tmp_path / "again")
+            assert (tmp_path / "again").read_bytes() == (tmp_path / "new").read_bytes()
 
 
 def test_graphs_of_other_meshes(saved: bytes, tmp_path: Path) -> None:
@@ -252,7 +285,7 @@ def test_graphs_of_other_meshes(saved: bytes, tmp_path: Path) -> None:
 
 def test_cut_off_and_drawn_out(mesh: sb.Mesh, saved: bytes, tmp_path: Path) -> None:
     path = tmp_path / "g"
-    for size in (8, 12, 95, 96, 100, len(saved) // 2, len(saved) - 4, len(saved) - 1):
+    for size in (8, 12, 95, 96, 111, 112, 116, len(saved) // 2, len(saved) - 4, len(saved) - 1):
         assert refusal(saved[:size], mesh, path).startswith("is a damaged graph file: it is cut off after ")
     assert "goes on for 1 bytes behind its end" in refusal(saved + b"\0", mesh, path)
     parts = GraphFile.of(saved)
@@ -264,7 +297,8 @@ def test_cut_off_and_drawn_out(mesh: sb.Mesh, saved: bytes, tmp_path: Path) -> N
     ("fields", "says"),
     [
         ({"version": 0}, "claims version 0"),
-        ({"header_bytes": 97}, "claims version 1 with 97 bytes instead of 96"),
+        ({"header_bytes": 97}, "claims version 2 with 97 bytes instead of 112"),
+        ({"version": 1}, "claims version 1 with 112 bytes instead of 96"),
         ({"file_bytes": 2**63}, "cut off after"),
         ({"vertex_count": 129}, "do not hold 129 vertices"),
         ({"vertex_count": 2**64 - 1, "arc_count": 2**61}, "do not hold"),
@@ -277,8 +311,10 @@ def test_cut_off_and_drawn_out(mesh: sb.Mesh, saved: bytes, tmp_path: Path) -> N
         ({"flags": 2}, "the flags 2"),
         ({"accuracy": 0.01}, "accuracy = 0.01"),
         ({"accuracy": float("nan")}, "accuracy = nan"),
-        ({"build_seconds": -1.0}, "a build of -1 seconds"),
-        ({"build_seconds": float("inf")}, "a build of inf seconds"),
+        ({"longest_path": -1.0}, "another unit"),
+        ({"longest_path": float("inf")}, "another unit"),
+        ({"longest_arc": 0.0}, "a longest arc of 0 instead of"),
+        ({"longest_arc": float("nan")}, "a longest arc of nan instead of"),
         ({"target_bits": 8}, "another unit"),
         ({"least_exponent": -2000}, "another unit"),
         ({"quantum": float("nan")}, "another unit"),

@@ -1,6 +1,7 @@
 #pragma once
 // The Saddle Vertex Graph [ying2013]: geodesic distances as shortest paths in a sparse graph.
 
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 
 namespace saddleback {
 
+class ArcCodec;
 class ArcRows;
 class QueryCache;
 class Unfolding;
@@ -90,6 +92,11 @@ class SaddleVertexGraph {
   explicit SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options = {}, Job* job = nullptr);
   /// Does the same as a part of other work.
   SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options, const JobStage& stage);
+  /// Joins the parts that find_arcs found of this mesh (see graph_parts.h), or unite_arcs united, all of them in any
+  /// order: the same graph as at once. The mesh must outlive it. \throw InputError for a part that is missing, given
+  /// twice, damaged, of another mesh or found otherwise; VersionError for one of another version; Cancelled. O(arcs).
+  static SaddleVertexGraph from_parts(const Mesh& mesh, std::span<const std::span<const std::byte>> parts,
+                                      int threads = 0, Job* job = nullptr);
   ~SaddleVertexGraph();
   SaddleVertexGraph(SaddleVertexGraph&&) noexcept;
 
@@ -100,9 +107,16 @@ class SaddleVertexGraph {
   /// \throw InputError when the file cannot be read, is none of ours, of a newer version, of another mesh, cut off or
   /// damaged; Cancelled. O(arcs), far less than building takes.
   static SaddleVertexGraph load(const std::string& path, const Mesh& mesh, Job* job = nullptr);
+  /// Maps the file of such a graph into memory, where the system brings what queries read: O(V). Rows are looked at
+  /// when they are read first, so that nothing in the file leads astray; `check_file` looks at all. Older files are
+  /// loaded. The file must not be changed in place. \throw InputError as `load` does, queries as well.
+  static SaddleVertexGraph open(const std::string& path, const Mesh& mesh, Job* job = nullptr);
+  /// Checks what `load` would have checked of a mapped file; returns at once for other graphs. O(arcs).
+  /// \throw InputError when the file is damaged; Cancelled.
+  void check_file(Job* job = nullptr) const;
 
   const Mesh& mesh() const { return *mesh_; }
-  const Unfolding& unfolding() const { return *unfolding_; }
+  const Unfolding& unfolding() const;
   Index k() const { return k_; }                 ///< 0 when built otherwise
   double accuracy() const { return accuracy_; }  ///< 0 when built otherwise
   bool is_exact() const { return exact_; }
@@ -110,7 +124,7 @@ class SaddleVertexGraph {
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
   /// Memory of the arcs and the order of the nodes.
   std::size_t nbytes() const;
-  double build_seconds() const { return build_seconds_; }
+  double build_seconds() const { return build_seconds_; }  ///< 0 when it was not built here
   bool built_by_cuda() const { return built_by_cuda_; }
   const DeviceTimes& device_times() const { return device_times_; }  ///< zero when no device built it
 
@@ -158,12 +172,12 @@ class SaddleVertexGraph {
   QueryCache& query_cache() const { return *queries_; }
 
  private:
-  SaddleVertexGraph();  ///< empty, for `load`
-  void order_nodes(int threads, const JobStage& stage);
+  SaddleVertexGraph();  ///< empty, for what makes them otherwise
+  ArcCodec codec_of_mesh(const JobStage& stage) const;
 
   const Mesh* mesh_ = nullptr;
   const WaveKernel* kernel_ = nullptr;
-  std::unique_ptr<Unfolding> unfolding_;
+  std::unique_ptr<Unfolding> unfolding_;  ///< none of mapped graphs: it waits in the cache of queries
   Index k_ = 0;
   double accuracy_ = 0;
   bool exact_ = false;

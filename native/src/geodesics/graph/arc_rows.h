@@ -1,9 +1,12 @@
 #pragma once
 // The arcs of a graph in flat arrays: one 64-bit word an arc.
 
+#include <atomic>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,6 +14,7 @@
 #include "saddleback/types.h"
 
 #include "geodesics/graph/arc_packing.h"
+#include "support/mapped_file.h"
 
 namespace saddleback {
 
@@ -18,6 +22,14 @@ namespace saddleback {
 struct PathBounds {
   double longest;        ///< bounds every finite distance from above
   double shortest_edge;  ///< no edge is shorter
+};
+
+/// Holds what a codec follows from.
+struct CodecParts {
+  int target_bits;
+  std::int32_t least_exponent;
+  double quantum, longest;
+  bool operator==(const CodecParts&) const = default;
 };
 
 /// Packs an arc into 64 bits, from the low end: target, direction and length.
@@ -40,6 +52,9 @@ class ArcCodec {
   ArcCodec() = default;
   /// \throw InputError where lengths differ by more than their exponents hold.
   ArcCodec(Index vertex_count, double mean_edge, const PathBounds& bounds);
+  explicit ArcCodec(const CodecParts& parts);
+  CodecParts parts() const { return {packing_.target_bits, least_exponent_, quantum_, longest_}; }
+  static int bits_of_targets(Index vertex_count);
 
   /// Rounds a length that is no arc's up to a multiple of the quantum; never zero. Lengths of arcs stay as they are.
   double round(double length) const {
@@ -57,6 +72,9 @@ class ArcCodec {
     return std::bit_cast<double>(((word & packing_.length_mask) >> k_length_shift) + packing_.bias);
   }
   std::uint64_t length_bits(std::uint64_t word) const { return word & packing_.length_mask; }  ///< order as lengths do
+  /// Tells whether a word is as `pack` leaves a word: nothing in its spare bits; a length of whole quanta, no longer
+  /// than paths are.
+  bool is_packed(std::uint64_t word) const;
   std::uint64_t target_mask() const { return packing_.target_mask; }
 
   /// Serves loops over whole rows: a double's bits are ((word & length_mask) >> k_length_shift) + length_bias.
@@ -80,11 +98,25 @@ class ArcCodec {
 /// Words of arcs, in memory that the threads that fill it touch first; huge pages make scattered look-ups cheaper.
 using ArcWords = LargeArray<std::uint64_t>;
 
+/// Words in a mapped file, which are looked at before they are read for the first time.
+struct MappedRows {
+  static constexpr Index k_block = 256;  ///< nodes that are looked at together
+  std::string path;
+  MappedFile file;
+  std::span<const std::uint64_t> words;
+  std::unique_ptr<std::atomic<bool>[]> seen;  ///< per block
+  MappedRows(const std::string& the_path, std::uint64_t node_count)
+      : path(the_path), file(the_path), seen(std::make_unique<std::atomic<bool>[]>(node_count / k_block + 1)) {}
+};
+
 /// Rows of arcs, a row a node, in compressed sparse rows.
 class ArcRows {
  public:
   ArcRows() = default;
   ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, ArcWords words);
+  ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, std::shared_ptr<MappedRows> mapped, double longest);
+  ArcRows(ArcRows&&) noexcept = default;
+  ArcRows& operator=(ArcRows&&) noexcept = default;
 
   Index node_count() const { return static_cast<Index>(offsets_.size()) - 1; }
   std::int64_t count() const { return static_cast<std::int64_t>(words_.size()); }
@@ -96,15 +128,26 @@ class ArcRows {
   /// The arc from one node to another, -1 when they are not linked. O(degree).
   std::int64_t find(Index from, Index to) const;
   double longest() const { return longest_; }
+  double find_longest() const;
+  /// Checks a node's row before its targets are read: in a file they may be anything. \throw InputError.
+  void look_at(Index node) const {
+    if (mapped_ && !mapped_->seen[node / MappedRows::k_block].load(std::memory_order_relaxed)) look_at_block_of(node);
+  }
+  void look_at_all() const;
+  const MappedRows* mapped() const { return mapped_.get(); }
   const ArcCodec& codec() const { return codec_; }
   std::span<const std::uint64_t> words() const { return words_; }
   std::span<const std::int64_t> offsets() const { return offsets_; }
   std::size_t nbytes() const;
 
  private:
+  void look_at_block_of(Index node) const;
+
   ArcCodec codec_;
   std::vector<std::int64_t> offsets_{0};
-  ArcWords words_;
+  ArcWords own_words_;
+  std::span<const std::uint64_t> words_;  ///< own ones, or mapped
+  std::shared_ptr<MappedRows> mapped_;
   double longest_ = 0;
 };
 

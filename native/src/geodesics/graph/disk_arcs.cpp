@@ -23,14 +23,16 @@ void append_arc(const ArcSearch& search, const ArcCodec& codec, Index vertex, co
   found.back_sectors.push_back(static_cast<std::uint8_t>(sector_of(arc.end_angle, mesh.total_angle(arc.vertex))));
 }
 
-void DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
+bool DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
   finder_.begin(GeodesicDisks::Sources::nodes);
   for (int lane = 0; lane < count; ++lane) finder_.add_node(lane, first + lane);
   finder_.run(stage);
+  if (finder_.left_tables()) return false;
   for (int lane = 0; lane < count; ++lane) {
     write_row(first + lane, lane, found);
     if (is_at_thin_face(first + lane)) add_near(first + lane, found, stage);
   }
+  return true;
 }
 
 bool DiskRows::is_at_thin_face(Index node) const {

@@ -22,9 +22,9 @@ class DiskRows {
         codec_(codec),
         finder_(tables.mesh, search.kernel, rule, &tables.strips) {}
 
-  /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them.
-  /// \throw Cancelled.
-  void find(Index first, Index count, FoundArcs& found, const JobStage& stage);
+  /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them. Returns
+  /// false, and appends none, when windows left the nodes for which tables are laid. \throw Cancelled.
+  bool find(Index first, Index count, FoundArcs& found, const JobStage& stage);
 
  private:
   void write_row(Index node, int lane, FoundArcs& found);

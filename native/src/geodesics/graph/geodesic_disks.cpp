@@ -81,6 +81,7 @@ void GeodesicDisks::begin(Sources sources) {
   now_->left_count = now_->right_count = 0;
   limits_.fill(k_infinity);
   generation_ = 0;
+  left_tables_ = false;
 }
 
 void GeodesicDisks::add_node(int lane, Index node) {
@@ -151,6 +152,7 @@ void GeodesicDisks::add_sighting(std::int32_t slot, const Vec2& place, const Vec
 void GeodesicDisks::add_wide_window(int lane, FirstWindow window) {
   constexpr int k_most_faces = 1000;
   for (int faces = 0; faces < k_most_faces; ++faces) {
+    if (window.entered == mesh_.beyond()) break;
     const EdgeRecord& record = mesh_.records()[window.entered];
     const Vec2 along = window.right - window.left;
     const Vec2 apex = window.left + record.a * along + record.b * Vec2(-along.y(), along.x());
@@ -170,6 +172,7 @@ void GeodesicDisks::add_wide_window(int lane, FirstWindow window) {
 
 /// Returns its row.
 int GeodesicDisks::add_window(int lane, const FirstWindow& window) {
+  left_tables_ |= window.entered == mesh_.beyond();
   WindowColumns& columns = now_->lefts;
   columns.reserve(now_->left_count + 1);
   const WindowRows rows = columns.rows();
@@ -196,12 +199,13 @@ int GeodesicDisks::add_window(int lane, const FirstWindow& window) {
 
 bool GeodesicDisks::run(const JobStage& stage) {
   window_count_ = 0;
-  for (; now_->size() > 0 && window_count_ < k_most_windows; std::swap(now_, next_)) {
+  for (; now_->size() > 0 && window_count_ < k_most_windows && !left_tables_; std::swap(now_, next_)) {
     stage.check();
     window_count_ += now_->size();
     advance();
   }
-  if (by_count()) finish_disks();
+  if (by_count() && !left_tables_) finish_disks();
+  if (left_tables_) return false;
   if (walk_) lower_along_borders();
   choose();
   if (sources_ == Sources::points) list_served();
@@ -215,6 +219,7 @@ void GeodesicDisks::cross_strips() {
   now_->right_count = take_into_strips(now_->rights, now_->right_count);
   for (const auto& [window, lane, root, most] : left_strips_) {
     const Index edge = window.edge;
+    left_tables_ |= !mesh_.laid().is_open(mesh_.origin(edge));
     const int i =
         add_window(lane, {window.ends[1], window.ends[0], mesh_.target(edge), mesh_.origin(edge), edge, root});
     const WindowRows rows = now_->lefts.rows();
@@ -255,6 +260,8 @@ int GeodesicDisks::take_into_strips(WindowColumns& windows, int count) {
     }
     const int lane = rows.edge[i] % k_batch;
     for (const StripSighting& sighting : seen_) {
+      const LaidNodes& laid = mesh_.laid();
+      left_tables_ |= !laid.is_whole() && !(laid.is_laid(sighting.node) && laid.is_laid(mesh_.origin(sighting.edge)));
       const std::int32_t slot = sighting.node * k_batch + lane;
       add_sighting(slot, sighting.place, sighting.from, sighting.edge * k_batch + lane, rows.root[i]);
       seen_on_borders_[lane].push_back({strips_->along_border(sighting.node), 0, slot});
@@ -330,9 +337,14 @@ void GeodesicDisks::advance() {
 }
 
 /// The next generation looks these up in no order: unless they are on their way by then, that is half of all time.
-void GeodesicDisks::fetch_records(const std::int32_t* edges, int count) const {
+void GeodesicDisks::fetch_records(const std::int32_t* edges, int count) {
   const EdgeRecord* const records = mesh_.records();
-  for (int i = 0; i < count; ++i) __builtin_prefetch(records + (edges[i] >> k_batch_bits));
+  std::int32_t last = 0;
+  for (int i = 0; i < count; ++i) {
+    __builtin_prefetch(records + (edges[i] >> k_batch_bits));
+    last = std::max(last, edges[i]);
+  }
+  left_tables_ |= last >> k_batch_bits == mesh_.beyond();
 }
 
 void GeodesicDisks::lower_labels(int from, int to) {
@@ -557,7 +569,9 @@ void GeodesicDisks::relax_from(std::int32_t slot) {
 
 /// Calls offer(neighbor, length) for the mesh edges about a node.
 template <class Offer>
-void GeodesicDisks::for_each_neighbor(Index node, Offer&& offer) const {
+void GeodesicDisks::for_each_neighbor(Index node, Offer&& offer) {
+  left_tables_ |= !mesh_.laid().is_laid(node);
+  if (left_tables_) return;
   for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) {
     offer(mesh_.target(e), mesh_.length(e));
     if (!mesh_.has_left(e)) offer(mesh_.records()[e].apex, mesh_.apex(e).norm());

@@ -66,6 +66,8 @@ class GeodesicDisks {
   /// Returns false when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
   bool run(const JobStage& stage);
+  /// Tells whether windows came to where no tables are laid: nothing of the run is to be used then.
+  bool left_tables() const { return left_tables_; }
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
   /// that are valid. The links are always among them.
   std::span<const std::int32_t> chosen(int lane) const { return {chosen_[lane].data(), chosen_counts_[lane]}; }
@@ -114,7 +116,7 @@ class GeodesicDisks {
   int take_into_strips(WindowColumns& windows, int count);
   void lower_along_borders();
   void advance();
-  void fetch_records(const std::int32_t* edges, int count) const;
+  void fetch_records(const std::int32_t* edges, int count);
   void lower_labels(int from, int to);
   template <int Lists>
   void lower_labels_of(int from, int to);
@@ -133,7 +135,7 @@ class GeodesicDisks {
   bool bends(std::int32_t slot, std::int32_t label) const;
   void relax_from(std::int32_t slot);
   template <class Offer>
-  void for_each_neighbor(Index node, Offer&& offer) const;
+  void for_each_neighbor(Index node, Offer&& offer);
 
   const WindowMesh& mesh_;
   const WaveKernel& kernel_;
@@ -149,6 +151,7 @@ class GeodesicDisks {
   ApexColumns apexes_;
   SightingColumns sightings_;
   int sighting_count_ = 0, generation_ = 0, window_count_ = 0;
+  bool left_tables_ = false;
   alignas(64) std::array<float, k_batch> limits_{};
   std::array<double, k_batch> scales_{};  ///< of the lanes' planes, see scale_about
   std::vector<std::int32_t> changed_;     ///< slots whose labels may have to be offered to neighbors

@@ -27,29 +27,28 @@ double room_for(double accuracy) {
   return std::lerp(k_room_where_fine, k_room, std::clamp(usual, 0.0, 1.0));
 }
 
-// Nodes whose arcs are kept together: so many that what is done for each block is nothing, so few that no thread waits
-// long for the last.
-constexpr Index k_block = 128;
 // Bytes.
 constexpr std::size_t k_piece = std::size_t{1} << 21, k_piece_a_node = 512;
 
-/// Calls find(draft, count, thread) from all threads. Blocks are filled in memory that each thread keeps.
+/// Calls find(draft, count, thread, done) from all threads, which returns whether the block was found. Blocks are
+/// filled in memory that each thread keeps.
 template <class Find>
-std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
+std::vector<KeptArcs> find_by_blocks(std::span<const Index> blocks, const ArcSearch& search, const JobStage& stage,
+                                     Find&& find) {
   const auto node_count = static_cast<Index>(search.vertices.size());
-  std::vector<KeptArcs> found((node_count + k_block - 1) / k_block);
+  std::vector<KeptArcs> found(blocks.size());
   std::vector<FoundArcs> drafts(thread_count(search.threads));
   const std::size_t piece = std::min(k_piece, k_piece_a_node * static_cast<std::size_t>(node_count));
   std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece));
-  WorkDone done(stage, node_count);
-  const auto find_block = [&](Index block, int thread) {
+  WorkDone done(stage, std::min(node_count, static_cast<Index>(blocks.size()) * k_nodes_a_block));
+  const auto find_block = [&](Index i, int thread) {
     FoundArcs& draft = drafts[thread];
-    draft.first_node = block * k_block;
+    draft.first_node = blocks[i] * k_nodes_a_block;
     draft.counts.clear();
     draft.words.clear();
     draft.back_sectors.clear();
-    find(draft, std::min(k_block, node_count - draft.first_node), thread, done);
-    found[block] = KeptArcs(draft, pieces[thread]);
+    if (find(draft, std::min(k_nodes_a_block, node_count - draft.first_node), thread, done))
+      found[i] = KeptArcs(draft, pieces[thread]);
   };
   try {
     parallel_for(static_cast<Index>(found.size()), search.threads, 1, find_block);
@@ -58,6 +57,12 @@ std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& st
     throw;
   }
   return found;
+}
+
+std::vector<Index> all_blocks(const ArcSearch& search) {
+  std::vector<Index> blocks(block_count(static_cast<Index>(search.vertices.size())));
+  std::iota(blocks.begin(), blocks.end(), 0);
+  return blocks;
 }
 
 // Shares of the time in which tables for waves are laid, until the end of each.
@@ -99,11 +104,11 @@ void check_memory(const ArcSearch& search, VisibleVertices& propagator, const Jo
 
 }  // namespace
 
-void check_mesh_size(const Mesh& mesh) {
-  constexpr Index k_most_edges = std::numeric_limits<std::int32_t>::max() / k_batch;
-  if (mesh.halfedge_count() <= k_most_edges) return;
-  throw InputError(message("mesh: ", mesh.face_count(), " triangles are more than a graph can be built for (",
-                           k_most_edges / 3, ")"));
+void check_mesh_size(std::int64_t triangle_count) {
+  constexpr Index k_most_triangles = std::numeric_limits<std::int32_t>::max() / k_batch / 3;
+  if (triangle_count <= k_most_triangles) return;
+  throw InputError(message("mesh: ", triangle_count, " triangles are more than a graph can be built for (",
+                           k_most_triangles, "); exact_distances needs no graph, or make a mesh of each part"));
 }
 
 DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
@@ -113,26 +118,42 @@ DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)
     : WaveTables(unfolding,
-                 (check_mesh_size(unfolding.mesh()),
+                 (check_mesh_size(unfolding.mesh().face_count()),
                   NodeEdges(unfolding.mesh(), vertices, threads, stage.part(0, k_with_edges))),
-                 nodes, vertices, threads, stage) {}
+                 LaidNodes(static_cast<Index>(vertices.size())), nodes, vertices, threads, stage) {}
 
-WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
-                       std::span<const Index> vertices, int threads, const JobStage& stage)
-    : mesh(unfolding, edges, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
-      sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage.part(k_with_mesh, 1)),
+WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
+                       std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                       const JobStage& stage)
+    : mesh(unfolding, edges, laid, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
+      sectors(edges, laid, unfolding, vertices, threads, stage.part(k_with_mesh, 1)),
       strips(unfolding, {edges.edge_of.data(), edges.edge_of.size()}, nodes, mesh.unit()) {}
+
+void WaveTables::lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
+                     std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                     const JobStage& stage) {
+  mesh.lay(unfolding, edges, laid, nodes, threads, stage.part(0, k_with_mesh));
+  sectors.lay(edges, laid, unfolding, vertices, threads, stage.part(k_with_mesh, 1));
+}
 
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
                                 const DiskRule& rule, const JobStage& stage) {
-  std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
-  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
+  std::vector<std::unique_ptr<DiskRows>> finders;
+  return disk_arcs_of(all_blocks(search), finders, search, codec, tables, rule, stage);
+}
+
+std::vector<KeptArcs> disk_arcs_of(std::span<const Index> blocks, std::vector<std::unique_ptr<DiskRows>>& finders,
+                                   const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
+                                   const DiskRule& rule, const JobStage& stage) {
+  finders.resize(thread_count(search.threads));
+  return find_by_blocks(blocks, search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
     if (!finders[thread]) finders[thread] = std::make_unique<DiskRows>(search, tables, codec, rule);
     for (Index i = 0; i < count; i += k_batch) {
       const Index batch = std::min(k_batch, count - i);
-      finders[thread]->find(found.first_node + i, batch, found, stage);
+      if (!finders[thread]->find(found.first_node + i, batch, found, stage)) return false;
       done.add(batch);
     }
+    return true;
   });
 }
 
@@ -141,16 +162,18 @@ std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec,
   std::vector<std::vector<DirectArc>> rows(propagators.size());
   propagators[0] = std::make_unique<VisibleVertices>(search.unfolding);
   check_memory(search, *propagators[0], stage);
-  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
-    if (!propagators[thread]) propagators[thread] = std::make_unique<VisibleVertices>(search.unfolding);
-    for (Index i = 0; i < count; ++i) {
-      const Index vertex = search.vertices[found.first_node + i];
-      propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread], stage);
-      found.counts.push_back(static_cast<std::int32_t>(rows[thread].size()));
-      for (const DirectArc& arc : rows[thread]) append_arc(search, codec, vertex, arc, found);
-      done.add(1);
-    }
-  });
+  return find_by_blocks(
+      all_blocks(search), search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
+        if (!propagators[thread]) propagators[thread] = std::make_unique<VisibleVertices>(search.unfolding);
+        for (Index i = 0; i < count; ++i) {
+          const Index vertex = search.vertices[found.first_node + i];
+          propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread], stage);
+          found.counts.push_back(static_cast<std::int32_t>(rows[thread].size()));
+          for (const DirectArc& arc : rows[thread]) append_arc(search, codec, vertex, arc, found);
+          done.add(1);
+        }
+        return true;
+      });
 }
 
 }  // namespace saddleback

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "geodesics/graph/arc_rows.h"
 #include "geodesics/unfolding/unfolded_corner.h"
 #include "mesh/tables/outgoing.h"
 #include "support/planar.h"
@@ -14,21 +15,21 @@
 namespace saddleback {
 namespace {
 
-constexpr Index k_chunk = 1024;
+constexpr Index k_chunk = LaidNodes::k_chunk;
 // Edges whose half-edges' records are asked for ahead, and edges whose neighbors' are.
 constexpr Index k_records_ahead = 24, k_neighbors_ahead = 12;
 
-/// Calls use(edge, halfedge) for the edges out of each node, a chunk of nodes to a thread. `fetch(halfedge)` and
-/// `fetch_neighbors(halfedge)` ask for what will be read: half-edges of neighboring nodes lie anywhere.
+/// Calls use(node, edge, halfedge) for the edges out of each laid node, a chunk of nodes to a thread. `fetch(halfedge)`
+/// and `fetch_neighbors(halfedge)` ask for what will be read: half-edges of neighboring nodes lie anywhere.
 template <class Use, class Fetch, class FetchNeighbors>
-void for_each_edge(const NodeEdges& edges, int threads, const JobStage& stage, Use&& use, Fetch&& fetch,
-                   FetchNeighbors&& fetch_neighbors) {
+void for_each_edge(const NodeEdges& edges, const LaidNodes& laid, int threads, const JobStage& stage, Use&& use,
+                   Fetch&& fetch, FetchNeighbors&& fetch_neighbors) {
   const auto nodes = static_cast<Index>(edges.first.size()) - 1, last = static_cast<Index>(edges.halfedges.size()) - 1;
   const Index chunks = (nodes + k_chunk - 1) / k_chunk;
   parallel_for(chunks, threads, 1, [&](Index chunk, int) {
     stage.update(static_cast<double>(chunk) / chunks);
     const Index begin = chunk * k_chunk, end = std::min(nodes, begin + k_chunk);
-    for (Index node = begin; node < end; ++node) {
+    for (Index node = begin; node < end && laid.is_laid(node); ++node) {
       for (Index e = edges.first[node]; e < edges.first[node + 1]; ++e) {
         fetch(edges.halfedges[std::min(e + k_records_ahead, last)]);
         fetch_neighbors(edges.halfedges[std::min(e + k_neighbors_ahead, last)]);
@@ -68,45 +69,106 @@ NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int thre
   });
 }
 
-WindowMesh::WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
-                       std::span<const Index> vertices, int threads, const JobStage& stage)
-    : first_(edges.first) {
+LaidNodes::LaidNodes(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes,
+                     std::span<const Index> chunks, int layers)
+    : states_(chunks_of(static_cast<Index>(nodes.size())), nothing) {
+  for (const Index chunk : chunks) states_[chunk] = open;
+  std::vector<Index> outer(chunks.begin(), chunks.end());
+  for (int layer = 0; layer < layers; ++layer) outer = widen(mesh, edges, nodes, outer, open);
+  is_whole_ = std::ranges::count(states_, open) == std::ssize(states_);
+  widen(mesh, edges, nodes, outer, laid);
+}
+
+/// Gives chunks that have none yet a state, where vertices share a face with some of the given chunks. Returns them.
+std::vector<Index> LaidNodes::widen(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes,
+                                    std::span<const Index> chunks, State state) {
+  std::vector<Index> added;
+  const auto add = [&](Index vertex) {
+    const Index chunk = nodes[vertex] / k_chunk;
+    if (states_[chunk] != nothing) return;
+    states_[chunk] = state;
+    added.push_back(chunk);
+  };
+  for (const Index chunk : chunks) {
+    const auto end = std::min(static_cast<Index>(nodes.size()), (chunk + 1) * k_chunk);
+    for (Index e = edges.first[chunk * k_chunk]; e < edges.first[end]; ++e) {
+      add(mesh.to(edges.halfedges[e]));
+      add(mesh.apex(edges.halfedges[e]));
+    }
+  }
+  return added;
+}
+
+EdgeRecord WindowMesh::record_of(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+                                 Index h) const {
+  const Mesh& mesh = unfolding.mesh();
+  const auto edge_behind = [&](Index side) {
+    const Index twin = mesh.twins()[side];
+    return twin == k_none ? k_none : edges.edge_of[twin];
+  };
+  // As the device lays it, which has no positions and leaves the extreme to the processor: directions are of single
+  // precision here.
+  const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
+  const double off = corner_off(base, mesh.face_area(Mesh::face_of(h)));
+  const double along = left > k_extreme * base ? unfolding.apex(h).x() : corner_along(base, left, right);
+  return {along / base, off / base, edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)), nodes[mesh.apex(h)], 0};
+}
+
+namespace {
+
+/// Asks ahead for what records are made of.
+auto fetch_faces(const Mesh& mesh) {
+  return [&mesh](Index h) {
+    __builtin_prefetch(mesh.twins().data() + h);
+    __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
+    __builtin_prefetch(mesh.lengths().data() + h);
+    __builtin_prefetch(&mesh.face_areas()[Mesh::face_of(h)]);
+  };
+}
+auto fetch_neighbors(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes) {
+  return [&mesh, edge_of = edges.edge_of.data(), nodes](Index h) {
+    __builtin_prefetch(edge_of + std::max(mesh.twins()[Mesh::prev(h)], 0));
+    __builtin_prefetch(edge_of + std::max(mesh.twins()[Mesh::next(h)], 0));
+    __builtin_prefetch(&nodes[mesh.apex(h)]);
+    __builtin_prefetch(&nodes[mesh.to(h)]);
+  };
+}
+
+constexpr double k_recorded = 0.63;  // of the time
+
+}  // namespace
+
+WindowMesh::WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
+                       std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                       const JobStage& stage)
+    : placed_(laid), first_(edges.first) {
   const Mesh& mesh = unfolding.mesh();
   unit_ = mesh.mean_edge_length();
-  records_.resize(edges.halfedges.size());
+  records_.resize(edges.halfedges.size() + 1);
+  records_.back() = {0, 0, k_none, k_none, 0, 0};
   targets_.resize(edges.halfedges.size());
   lengths_.resize(edges.halfedges.size());
   saddles_.resize(vertices.size());
-  const Index *const twins = mesh.twins().data(), *const edge_of = edges.edge_of.data();
-  const auto edge_behind = [&](Index h) { return twins[h] == k_none ? k_none : edge_of[twins[h]]; };
-  constexpr double k_recorded = 0.63;  // of the time
   for_each_edge(
-      edges, threads, stage.part(0, k_recorded),
+      edges, LaidNodes(static_cast<Index>(vertices.size())), threads, stage.part(0, k_recorded),
       [&](Index node, Index e, Index h) {
         if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
-        const Index apex = mesh.apex(h);
-        // As the device lays it, which has no positions and leaves the extreme to the processor: directions are of
-        // single precision here.
-        const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
-        const double off = corner_off(base, mesh.face_area(Mesh::face_of(h)));
-        const double along = left > k_extreme * base ? unfolding.apex(h).x() : corner_along(base, left, right);
-        records_[e] = {along / base, off / base, edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)),
-                       nodes[apex],  0};
+        if (placed_.is_laid(node)) records_[e] = record_of(unfolding, edges, nodes, h);
         targets_[e] = nodes[mesh.to(h)];
         lengths_[e] = mesh.length(h) / unit_;
       },
-      [&](Index h) {
-        __builtin_prefetch(twins + h);
-        __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
-        __builtin_prefetch(mesh.lengths().data() + h);
-        __builtin_prefetch(&mesh.face_areas()[Mesh::face_of(h)]);
-      },
-      [&](Index h) {
-        __builtin_prefetch(edge_of + std::max(twins[Mesh::prev(h)], 0));
-        __builtin_prefetch(edge_of + std::max(twins[Mesh::next(h)], 0));
-        __builtin_prefetch(&nodes[mesh.apex(h)]);
-        __builtin_prefetch(&nodes[mesh.to(h)]);
-      });
+      fetch_faces(mesh), fetch_neighbors(mesh, edges, nodes));
+  find_clearances(threads, stage.part(k_recorded, 1));
+}
+
+void WindowMesh::lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
+                     std::span<const Index> nodes, int threads, const JobStage& stage) {
+  placed_ = laid;
+  const Mesh& mesh = unfolding.mesh();
+  for_each_edge(
+      edges, placed_, threads, stage.part(0, k_recorded),
+      [&](Index, Index e, Index h) { records_[e] = record_of(unfolding, edges, nodes, h); }, fetch_faces(mesh),
+      fetch_neighbors(mesh, edges, nodes));
   find_clearances(threads, stage.part(k_recorded, 1));
 }
 
@@ -127,6 +189,7 @@ void WindowMesh::find_clearances(int threads, const JobStage& stage) {
   LargeArray<About> about(node_count());
   parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
     look(first, node);
+    if (!placed_.is_laid(node)) return;
     for (Index e = begin(node); e < end(node); ++e) {
       const Vec2 target(length(e), 0), far = apex(e);
       about[node].clearance = std::min(about[node].clearance, distance_to_segment(Vec2(0, 0), target, far));
@@ -136,6 +199,7 @@ void WindowMesh::find_clearances(int threads, const JobStage& stage) {
   LargeArray<float> clearances(records_.size());
   parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
     look(second, node);
+    if (!placed_.is_laid(node)) return;
     const auto beside = [](const About& end, const Vec2& along, const Vec2& to_apex) {
       const double sine =
           along.dot(to_apex) > 0 ? std::abs(cross(along, to_apex)) / (along.norm() * to_apex.norm()) : 1;
@@ -151,9 +215,13 @@ void WindowMesh::find_clearances(int threads, const JobStage& stage) {
   const auto upper_half = [&](Index edge) {
     return edge < 0 ? 0U : std::bit_cast<std::uint32_t>(clearances[edge]) >> 16;
   };
-  parallel_for(edge_count(), threads, k_chunk, [&](Index e, int) {
-    EdgeRecord& record = records_[e];
-    record.clearances = upper_half(record.left) << 16 | (upper_half(record.right) & ~k_saddle_bit);
+  parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    if (!placed_.is_open(node)) return;
+    for (Index e = begin(node); e < end(node); ++e) {
+      EdgeRecord& record = records_[e];
+      record.clearances = upper_half(record.left) << 16 | (upper_half(record.right) & ~k_saddle_bit);
+      if (record.right >= 0 && !placed_.is_open(record.apex)) record.right = beyond();
+    }
   });
 }
 
@@ -170,23 +238,30 @@ FanMesh::FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::
 
 FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
                  std::span<const Index> vertices, int threads, const JobStage& stage)
-    : waves_(unfolding, edges, nodes, vertices, threads, stage.part(0, 0.7)), apex_directions_(edges.halfedges.size()) {
+    : waves_(unfolding, edges, LaidNodes(static_cast<Index>(vertices.size())), nodes, vertices, threads,
+             stage.part(0, 0.7)),
+      apex_directions_(edges.halfedges.size()) {
   for_each_edge(
-      edges, threads, stage.part(0.7, 1),
+      edges, waves_.laid(), threads, stage.part(0.7, 1),
       [&](Index, Index e, Index h) { apex_directions_[e] = unfolding.polar(Mesh::prev(h)); },
       [&](Index h) { __builtin_prefetch(&unfolding.polar(h)); }, [](Index) {});
 }
 
-WaveSectors::WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices,
-                         int sectors, int threads, const JobStage& stage) {
-  const Mesh& mesh = unfolding.mesh();
+WaveSectors::WaveSectors(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding,
+                         std::span<const Index> vertices, int threads, const JobStage& stage) {
   sectors_.resize(edges.halfedges.size());
   reverse_sectors_.resize(edges.halfedges.size());
   apex_sectors_.resize(edges.halfedges.size());
   per_radian_.resize(vertices.size());
-  const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
+  lay(edges, laid, unfolding, vertices, threads, stage);
+}
+
+void WaveSectors::lay(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding,
+                      std::span<const Index> vertices, int threads, const JobStage& stage) {
+  const Mesh& mesh = unfolding.mesh();
+  const auto per_radian = [&](Index vertex) { return ArcCodec::k_sectors / mesh.total_angle(vertex); };
   for_each_edge(
-      edges, threads, stage,
+      edges, laid, threads, stage,
       [&](Index node, Index e, Index h) {
         const double here = per_radian(vertices[node]);
         if (e == edges.first[node]) per_radian_[node] = static_cast<float>(here);

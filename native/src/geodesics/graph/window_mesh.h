@@ -22,18 +22,48 @@ struct NodeEdges {
   NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage);
 };
 
+/// Says about which nodes tables are laid: all of them, or those of a range with a halo, by chunks of neighbors.
+/// Windows may enter faces of half-edges out of *open* nodes; the nodes about these are laid for them.
+class LaidNodes {
+ public:
+  static constexpr Index k_chunk = 256;
+  static Index chunks_of(Index node_count) { return (node_count + k_chunk - 1) / k_chunk; }
+  /// All nodes.
+  explicit LaidNodes(Index node_count) : states_(chunks_of(node_count), open), is_whole_(true) {}
+  /// Opens the given chunks and those about them, so many layers wide. `nodes` of the vertices. O(nodes opened).
+  LaidNodes(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes, std::span<const Index> chunks,
+            int layers);
+
+  bool is_whole() const { return is_whole_; }
+  bool is_open(Index node) const { return states_[node / k_chunk] == open; }
+  bool is_laid(Index node) const { return states_[node / k_chunk] != nothing; }
+
+ private:
+  enum State : std::uint8_t { nothing, laid, open };
+  std::vector<Index> widen(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes,
+                           std::span<const Index> chunks, State state);
+  std::vector<State> states_;
+  bool is_whole_;
+};
+
 /// Half-edges in the order of NodeEdges. Lengths are in units of the mean edge, so that
 /// single-precision bounds hold at any scale.
 class WindowMesh {
  public:
-  /// \throw Cancelled.
-  WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+  /// Records are those of the laid nodes; what else there is, is whole. \throw Cancelled.
+  WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid, std::span<const Index> nodes,
              std::span<const Index> vertices, int threads, const JobStage& stage);
+  /// Lays the records of other nodes instead. \throw Cancelled.
+  void lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid, std::span<const Index> nodes,
+           int threads, const JobStage& stage);
+  const LaidNodes& laid() const { return placed_; }
+  /// Returns what stands for half-edges out of nodes that are not open: an entry behind the last.
+  Index beyond() const { return edge_count(); }
 
   Index node_count() const { return static_cast<Index>(first_.size()) - 1; }
   Index begin(Index node) const { return first_[node]; }  ///< edges out of a node: [begin, end)
   Index end(Index node) const { return first_[node + 1]; }
-  Index edge_count() const { return static_cast<Index>(records_.size()); }
+  Index edge_count() const { return static_cast<Index>(targets_.size()); }
   const EdgeRecord* records() const { return records_.data(); }
   double unit() const { return unit_; }
 
@@ -58,8 +88,10 @@ class WindowMesh {
   const double* lengths() const { return lengths_.data(); }
 
  private:
+  EdgeRecord record_of(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes, Index h) const;
   void find_clearances(int threads, const JobStage& stage);
 
+  LaidNodes placed_;
   LargeArray<EdgeRecord> records_;
   std::vector<Index> first_;
   LargeArray<Index> targets_;
@@ -89,8 +121,11 @@ class FanMesh {
 class WaveSectors {
  public:
   /// `vertices` of the nodes. \throw Cancelled.
-  WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices, int sectors,
-              int threads, const JobStage& stage);
+  WaveSectors(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding,
+              std::span<const Index> vertices, int threads, const JobStage& stage);
+  /// Lays them for other nodes. \throw Cancelled.
+  void lay(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding, std::span<const Index> vertices,
+           int threads, const JobStage& stage);
 
   float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin
   float reverse_sector(Index edge) const { return reverse_sectors_[edge]; }  ///< and at its target

@@ -167,6 +167,7 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
       stage.update((of_seeds + static_cast<double>(expanded)) / all);
     }
     if (with_sources) offer.label = sources_[entry.node];
+    graph.arcs().look_at(entry.node);
     for (std::int64_t first = offsets[entry.node]; first < end; first += LoweredNodes::k_most) {
       const auto arcs = static_cast<int>(std::min<std::int64_t>(end - first, LoweredNodes::k_most));
       relax(codec, words + first, arcs, offer, lowered);

@@ -55,6 +55,7 @@ DeviceGraphs::Kept DeviceGraphs::on(int device, const SaddleVertexGraph& graph, 
   if (kept_ && kept_->device == device) return *kept_;
   kept_.reset();
   const ArcRows& arcs = graph.arcs();
+  arcs.look_at_all();
   const CudaGraphRequest request{.device = device,
                                  .most_bytes = cuda_memory_limit(),
                                  .node_count = arcs.node_count(),

@@ -46,6 +46,7 @@ NearestSweep::NearestSweep(const SaddleVertexGraph& graph, int threads, const Jo
 void NearestSweep::list_nearest(Index node) {
   const ArcRows& arcs = graph_.arcs();
   const ArcCodec& codec = arcs.codec();
+  arcs.look_at(node);
   const auto row = arcs.words().subspan(arcs.first(node), arcs.first(node + 1) - arcs.first(node));
   std::vector<std::uint64_t> words(row.begin(), row.end());
   left_out_[node] = k_infinity;

@@ -56,6 +56,7 @@ class PointSearch::Run {
         arcs_to_check = k_arcs_a_check;
         stage.check();
       }
+      arcs.look_at(entry.node);
       for (std::int64_t first = arcs.first(entry.node); first < end; first += LoweredNodes::k_most) {
         const auto count = static_cast<int>(std::min<std::int64_t>(end - first, LoweredNodes::k_most));
         relax(arcs.codec(), words + first, count, row, lowered_);

@@ -28,12 +28,19 @@ class QueryCache {
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
   /// Returns the same for what fans of points are found with.
   const FanMesh& fan_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
+  /// Returns the unfolding of the graph's mesh, laid in the first call.
+  const Unfolding& unfolding(const Mesh& mesh) {
+    std::call_once(unfolding_once_, [&] { unfolding_ = std::make_unique<Unfolding>(mesh, 0, JobStage()); });
+    return *unfolding_;
+  }
   bool has_fan_mesh() const { return has_fan_mesh_; }
 
  private:
   std::timed_mutex landmarks_mutex_, fan_mesh_mutex_;
   std::unique_ptr<Landmarks> landmarks_;
   std::unique_ptr<FanMesh> fan_mesh_;
+  std::once_flag unfolding_once_;
+  std::unique_ptr<Unfolding> unfolding_;
   std::atomic<bool> has_fan_mesh_{false};
 };
 

@@ -90,6 +90,7 @@ void SeenFromSites::find_from_vertex(SeenVertices& seen) const {
   UnfoldedArc unfolded;
   const std::int64_t begin = arcs.first(node), count = arcs.first(node + 1) - begin;
   seen.resize(static_cast<std::size_t>(count));
+  arcs.look_at(node);
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t arc = begin + i;
     const double rounded = arcs.length(arc);
