@@ -39,9 +39,11 @@ PAGES: dict[str, tuple[str, dict[str, str]]] = {
         "vertices, triangles = meshes.icosphere(3)\n"
         "north, south, places, values, start = 3, 17, [0, 9, 40], [1.0, 2.0, 5.0], 30\n"
         "given = sb.Mesh(vertices, triangles)\n"
-        "graph, vectors = sb.SaddleVertexGraph(given), np.tile([1.0, 0, 0], (len(triangles), 1))\n"
+        "graph = sb.SaddleVertexGraph(given)\n"
         "points, path = sb.sample(given, 5), sb.trace(given, 60, 0.3, 0.5)\n"
-        "curve = sb.SurfaceCurve(given, path.surface)\n",
+        "curve = sb.SurfaceCurve(given, path.surface)\n"
+        "painted, pressure = given.face_areas > np.median(given.face_areas), np.ones(len(triangles))\n"
+        "vectors = sb.direction_field(given).vectors\n",
         {},
     ),
     "exchange": (LIZARD, {}),

@@ -345,7 +345,8 @@ py::tuple save_field(const py::object& self) {
 
 py::object load_field(const py::tuple& state) {
   const py::tuple parts = as_state(state, 4);
-  const Mesh& mesh = as_mesh(parts[0], "state");
+  const py::object owner = parts[0];
+  const Mesh& mesh = as_mesh(owner, "state");
   int symmetry = 1;
   std::vector<double> angles;
   std::vector<Vec3> turns;
