@@ -134,6 +134,21 @@ def test_distance_by_graph_file_and_exactly(capsys) -> None:
     assert None in json.loads(Path("d.json").read_text())["distance"]  # the other part is out of reach
 
 
+def test_graphs_in_parts_are_the_same_file(capsys) -> None:
+    summary(capsys, "graph good.ply --k 30 -o whole.graph")
+    for part in (1, 2, 3):
+        summary(capsys, f"graph good.ply --k 30 --part {part}/3 -o {part}.arcs")
+    summary(capsys, "graph good.ply --merge 3.arcs 1.arcs 2.arcs -o merged.graph")
+    assert Path("merged.graph").read_bytes() == Path("whole.graph").read_bytes()
+    for words in ("--merge 1.arcs 2.arcs", "--merge 1.arcs 1.arcs 2.arcs 3.arcs", "--merge 1.arcs 2.arcs notes.ply"):
+        code, _, err = ask(capsys, f"graph good.ply {words} -o again.graph")
+        assert code == 1
+        assert is_one_sentence(err), err
+    for words in ("--part 4/3", "--part 0/3", "--part three", "--merge", "1.arcs", "--part 1/3 --exact"):
+        assert ask(capsys, f"graph good.ply {words}")[0] == 2, words
+    assert not Path("again.graph").exists()
+
+
 def test_path(capsys) -> None:
     mesh = sb.read_mesh("ball.obj")
     told = summary(capsys, "path", "ball.obj", "--from", "0", "--to", "9", "-o", "way.obj")

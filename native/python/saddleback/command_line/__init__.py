@@ -20,7 +20,7 @@ except ImportError:
 _VERBS = {
     "info": ("mesh_verbs", "Size, topology and faults of meshes."),
     "repair": ("mesh_verbs", "Make a valid mesh of nearly anything."),
-    "graph": ("distance_verbs", "Build the distance graph of a mesh, to be used again."),
+    "graph": ("distance_verbs", "Build the distance graph of a mesh, whole or in parts, to be used again."),
     "distance": ("distance_verbs", "Geodesic distances of all vertices from points."),
     "path": ("distance_verbs", "The shortest path between two points."),
     "cells": ("cell_verbs", "Even cells, or the cells of given sites: with their dual, split mesh and edges."),

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import click
@@ -14,13 +15,22 @@ from saddleback.command_line.runs import GRAPH, Run, Summary, output, verb
 
 
 @verb(
-    output("-o", "--output", formats=("graph",), help="The graph, for --graph of other verbs"),
+    output("-o", "--output", formats=("graph", "arcs"), help="The graph, for --graph of other verbs, or a part's arcs"),
+    click.option("--part", metavar="I/N", help="Only the arcs of part I of N, from 1 on, for --merge."),
+    click.option("--merge", is_flag=True, help="Make the graph of all PARTS, the same bytes as at once."),
+    click.argument("parts", metavar="[PARTS]...", nargs=-1),
     *GRAPH[1:],
     click.option("--exact", is_flag=True, help="All straight geodesics: exact between vertices, and much larger."),
 )
-def graph(run: Run, exact: bool) -> Summary:
-    """Build the distance graph of a mesh, to be used again by --graph."""
-    built = run.graph
+def graph(run: Run, exact: bool, part: str | None, merge: bool, parts: tuple[str, ...]) -> Summary:
+    """Build the distance graph of a mesh, whole or in parts, to be used again by --graph."""
+    if merge != bool(parts) or (part and (merge or exact)):
+        raise click.UsageError(
+            "wanted --merge PARTS..., --part I/N, or neither; parts are of graphs that are not exact"
+        )
+    if part:
+        return _part(run, part)
+    built = _merged(run, parts) if merge else run.graph
     if run.out["output"]:
         built.save(run.out["output"], job=run.job)
     return {
@@ -33,6 +43,25 @@ def graph(run: Run, exact: bool) -> Summary:
         "seconds": built.build_seconds,
         "bytes": built.nbytes,
     }
+
+
+def _part(run: Run, part: str) -> Summary:
+    match = re.fullmatch(r"(\d+)/(\d+)", part)
+    if not match or not 1 <= int(match[1]) <= int(match[2]):
+        raise click.UsageError(f"--part: wanted I/N with I from 1 to N, got {part}")
+    given = {key: run.options[key] for key in ("accuracy", "k", "threads") if run.options[key] is not None}
+    arcs = sb.find_arcs(run.mesh, int(match[1]) - 1, int(match[2]), **given, job=run.job)
+    if run.out["output"]:
+        runs.save(run.out["output"], arcs)
+    return {"part": part, "bytes": len(arcs)}
+
+
+def _merged(run: Run, names: tuple[str, ...]) -> sb.SaddleVertexGraph:
+    found = []
+    for name in names:
+        with open(runs.fill(name, run.options["frame"]), "rb") as file:
+            found.append(file.read())
+    return sb.SaddleVertexGraph.from_parts(run.mesh, found, threads=run.options["threads"], job=run.job)
 
 
 def _from(what: str) -> tuple[runs.Option, runs.Option]:
