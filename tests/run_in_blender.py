@@ -12,6 +12,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import NoReturn
 
 # Before anything asks Blender for its folders: a test must not see, or touch, the user's own.
 os.environ.setdefault("BLENDER_USER_RESOURCES", tempfile.mkdtemp(prefix="saddleback-blender-"))
@@ -33,7 +34,17 @@ def main() -> int:
     return int(pytest.main([*arguments, "-o", f"cache_dir={folder}", "-W", "default"], plugins=[StreamPlugin()]))
 
 
+def leave(code: int) -> NoReturn:
+    """Ends the program. The module of Blender 4.2 frees panels after Python has ended, anybody's: it crashes there."""
+    import bpy
+
+    sys.stdout.flush()
+    if bpy.app.version < (4, 3) and not bpy.app.binary_path:
+        sys.stderr.flush()
+        os._exit(code)
+    sys.exit(code)
+
+
 if __name__ == "__main__":
     code = main()
-    sys.stdout.flush()
-    sys.exit(code)
+    leave(code)

@@ -122,3 +122,6 @@ def again(file):
 if __name__ == "__main__":
     step, *paths = sys.argv[sys.argv.index("--") + 1 :]
     {"first": first, "again": again}[step](*map(Path, paths))
+    sys.stdout.flush()
+    if bpy.app.version < (4, 3) and not bpy.app.binary_path:
+        os._exit(0)  # as tests/run_in_blender.py does
