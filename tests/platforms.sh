@@ -21,14 +21,14 @@ print(folder, folder.replace("/usr/include", f"/usr/include/{multiarch}"))')
   cp "$settings/pyconfig.h" "$2"
 }
 
-# install_for FOLDER PLATFORM_TAG PACKAGE...: wheels for Python 3.11 on another system.
+# install_for FOLDER PLATFORM_TAG VERSION PACKAGE...: wheels for the Python of that version on another system.
 install_for() {
-  local folder=$1 tag=$2 wanted; shift 2
+  local folder=$1 tag=$2 version=$3 wanted; shift 3
   wanted=$(printf '%s\n' "$@")
   [ "$(cat "$folder/saddleback.stamp" 2>/dev/null)" != "$wanted" ] || return 0
   say "Installing into $folder: $*"
   .venv/bin/python -m pip install -q --disable-pip-version-check --no-deps --upgrade --target "$folder" \
-    --platform "$tag" --python-version 3.11 --only-binary :all: "$@" || die "pip could not install into $folder."
+    --platform "$tag" --python-version "$version" --only-binary :all: "$@" || die "pip could not install into $folder."
   printf '%s\n' "$wanted" >"$folder/saddleback.stamp"
 }
 # What pytest, hypothesis and meshio need, as --no-deps has to name it; numpy, scipy and pygeodesic have their versions per platform.
@@ -78,20 +78,34 @@ in_wine() {
 set_up_windows_tests() {
   local blender=.cache/windows/bpy-4.5
   install_packages "Wine" wine64
-  install_for .cache/windows/packages win_amd64 "${test_packages[@]}" numpy==1.26.4 scipy==1.13.1 pygeodesic==0.1.11
+  install_for .cache/windows/packages win_amd64 3.11 "${test_packages[@]}" numpy==1.26.4 scipy==1.13.1 pygeodesic==0.1.11
   [ -f "$blender/python.exe" ] || cp -r .cache/windows/python-3.11 "$blender"  # a Python that has bpy however it is started
-  install_for "$blender/Lib/site-packages" win_amd64 "bpy==4.5.*" numpy==1.26.4 requests urllib3 idna certifi \
+  install_for "$blender/Lib/site-packages" win_amd64 3.11 "bpy==4.5.*" numpy==1.26.4 requests urllib3 idna certifi \
     charset-normalizer zstandard
 }
 
-# test_windows [PYTEST_ARGUMENT...]: digests, tests/native, and the add-on in Blender for Windows; or these tests alone.
+# digests_on_windows VERSION: what the module for the Python of that version answers.
+digests_on_windows() {
+  local numpy=1.26.4
+  [ "$1" != 3.13 ] || numpy=2.1.0  # has wheels for it; later ones want a newer Wine
+  install_for ".cache/windows/numpy-$1" win_amd64 "$1" "numpy==$numpy"
+  say "Digests on Windows, Python $1"
+  PYTHONPATH="Z:$PWD/build-windows-$1/python;Z:$PWD/.cache/windows/numpy-$1;Z:$PWD" \
+    in_wine ".cache/windows/python-$1/python.exe" -m tests.digests --portable
+}
+
+# test_windows [PYTEST_ARGUMENT...]: digests of the module for each Python that addon/package finds, tests/native, and the
+# add-on in Blender for Windows; or these tests alone.
 test_windows() {
-  local packages="Z:$PWD/.cache/windows/packages" build="Z:$PWD/build-windows-3.11/python" failed=()
-  if [ $# = 0 ]; then addon/package --platform windows-x64; else build_windows "$python_wanted" "$PWD/.venv/bin/python"; fi
+  local packages="Z:$PWD/.cache/windows/packages" build="Z:$PWD/build-windows-3.11/python" versions=(3.11) version failed=()
+  if [ $# = 0 ]; then
+    addon/package --platform windows-x64
+    for version in 3.10 3.12 3.13; do ! find_interpreter "$version" >/dev/null || versions+=("$version"); done
+  else
+    build_windows "$python_wanted" "$PWD/.venv/bin/python"
+  fi
   set_up_windows_tests
-  say "Digests on Windows"
-  PYTHONPATH="$build;$packages;Z:$PWD" in_wine .cache/windows/python-3.11/python.exe -m tests.digests --portable ||
-    failed+=(digests)
+  for version in "${versions[@]}"; do digests_on_windows "$version" || failed+=("digests, Python $version"); done
   say "Testing on Windows"
   PYTHONPATH="$build;$packages" in_wine .cache/windows/python-3.11/python.exe -m pytest "${elsewhere[@]}" \
     "${@:-tests/native}" || failed+=(pytest)
@@ -112,7 +126,7 @@ arm64_packages=(python3.11-minimal libpython3.11-minimal libpython3.11-stdlib li
 set_up_arm64() {
   local root=.cache/arm64/root package options
   install_packages "Arm" g++-aarch64-linux-gnu qemu-user-static python3-dev
-  install_for .cache/arm64/packages manylinux2014_aarch64 "${test_packages[@]}" "numpy==2.2.*" "scipy==1.15.*"
+  install_for .cache/arm64/packages manylinux2014_aarch64 3.11 "${test_packages[@]}" "numpy==2.2.*" "scipy==1.15.*"
   [ ! -f "$root/usr/bin/python3.11" ] || return 0
   say "Fetching Debian's Python for Arm"
   mkdir -p "$root" .cache/arm64/{debs,lists/partial}
