@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: MIT
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs pytest inside Blender.
 
     blender -b --factory-startup --python-exit-code 9 --python tests/run_in_blender.py -- PYTEST_ARGUMENTS
