@@ -170,6 +170,7 @@ def _by_pyvista(scene: _Scene, picture: Any, is_shown: bool) -> Any:
 def _by_polyscope(scene: _Scene, picture: Any, is_shown: bool) -> Any:
     polyscope = _package("polyscope", "show")
     if not polyscope.is_initialized():
+        polyscope.set_use_prefs_file(False)  # or it writes two files into whatever folder one is in
         polyscope.init()
     polyscope.remove_all_structures()
     for name, surface, of_vertices, of_faces in scene.surfaces:

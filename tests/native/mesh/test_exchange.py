@@ -303,6 +303,7 @@ def test_everything_can_be_shown(backend: str, tmp_path: Path) -> None:
     if backend == "polyscope":
         import polyscope
 
+        polyscope.set_use_prefs_file(False)
         polyscope.init("openGL_mock")
     graph = sb.SaddleVertexGraph(MESH)
     cells = sb.geodesic_voronoi(graph, [0, 9, 60])
