@@ -67,6 +67,7 @@ int __wrap_pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, cons
 }
 
 constexpr int k_stat_version = 1;
+int __wrap_fstat(int file, struct stat* result) { return old_fxstat(k_stat_version, file, result); }
 int __wrap_fstat64(int file, struct stat* result) { return old_fxstat(k_stat_version, file, result); }
 int __wrap_lstat(const char* path, struct stat* result) { return old_lxstat(k_stat_version, path, result); }
 int __wrap_stat(const char* path, struct stat* result) { return old_xstat(k_stat_version, path, result); }
