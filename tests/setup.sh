@@ -47,16 +47,17 @@ find_python() {
     "$(/usr/bin/python3 --version 2>&1 || true). Name another interpreter with SADDLEBACK_PYTHON_EXE=/path/to/python$python_wanted."
 }
 
-# fill_venv FOLDER WHAT PYTHON PIP_ARGUMENT...: a virtual environment with these packages; nothing to do when its stamp tells so.
+# fill_venv FOLDER WHAT PYTHON PIP_ARGUMENT...: a virtual environment with these packages; nothing to do when its stamp for
+# this purpose tells so.
 fill_venv() {
-  local folder=$1 what=$2 interpreter=$3 argument wanted; shift 3
+  local folder=$1 what=$2 interpreter=$3 stamp="$1/${2// /-}.stamp" argument wanted; shift 3
   wanted=$({ printf '%s\n' "$interpreter" "$@"; for argument in "$@"; do [ ! -f "$argument" ] || cat "$argument"; done; } | sha256sum)
-  [ "$(cat "$folder/saddleback.stamp" 2>/dev/null)" != "$wanted" ] || return 0
+  [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ] || return 0
   say "Installing $what into $folder"
   [ -x "$folder/bin/python" ] || "$interpreter" -m venv "$folder"
   "$folder/bin/python" -m pip install -q --disable-pip-version-check --no-input "$@" ||
     die "pip could not install $what into $folder."
-  printf '%s\n' "$wanted" >"$folder/saddleback.stamp"
+  printf '%s\n' "$wanted" >"$stamp"
 }
 
 # build_native PRESET FOLDER [CMAKE_ARGUMENT...]: configures once, then builds what changed.
@@ -77,7 +78,12 @@ build_native() {
 set_up_tools() {
   install_packages "the build" "${build_packages[@]}"
   find_python
-  fill_venv .venv "the build and test tools" "$python" -r tests/requirements.txt -r docs/site/requirements.txt
+  fill_venv .venv "the build and test tools" "$python" -r tests/requirements.txt
+}
+
+# set_up_site: after set_up_tools; what docs/site/build needs.
+set_up_site() {
+  fill_venv .venv "the reference site's tools" "$python" -r tests/requirements.txt -r docs/site/requirements.txt
 }
 
 # set_up_build: after set_up_tools; .venv/bin/python can `import saddleback` afterwards.
