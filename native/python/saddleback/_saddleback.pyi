@@ -959,8 +959,8 @@ class SaddleVertexGraph:
         mmap : bool
             Map the file into memory instead of reading it: the system brings what queries read, and programs that map the same
             file share it. Rows of arcs are looked at when they are read first, so that a damaged file leads nowhere; what only
-            the whole of it tells, `check` finds. The file may be replaced, but must not be changed in place. Files of older
-            versions are read.
+            the whole of it tells, `check` finds. The file may be replaced (not under Windows, as long as it is mapped), but must
+            not be changed in place. Files of older versions are read.
         job : Job, optional
 
         Returns

@@ -48,7 +48,10 @@ FileHandle open_file(const fs::path& path, const char* mode) {
 
 bool move_file(const fs::path& from, const fs::path& to) {
   if (MoveFileExW(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING) != 0) return true;
-  const auto reason = std::system_category().default_error_condition(static_cast<int>(GetLastError()));
+  const DWORD error = GetLastError();
+  const DWORD told =
+      error == ERROR_USER_MAPPED_FILE ? ERROR_ACCESS_DENIED : error;  // the C library knows only this one
+  const auto reason = std::system_category().default_error_condition(static_cast<int>(told));
   errno = reason_of(to, reason.category() == std::generic_category() ? reason.value() : EIO);
   return false;
 }

@@ -22,9 +22,11 @@ namespace fs = std::filesystem;
 #ifdef _WIN32
 bool bring_to_disk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
 bool may_be_written(const fs::path& file) { return _waccess(file.c_str(), 2) == 0; }
+constexpr const char* k_forbidden_advice = "close what has it open (a graph loaded with mmap=True does), allow it";
 #else
 bool bring_to_disk(std::FILE* file) { return std::fflush(file) == 0 && fsync(fileno(file)) == 0; }
 bool may_be_written(const fs::path& file) { return access(file.c_str(), W_OK) == 0; }
+constexpr const char* k_forbidden_advice = "allow it";
 #endif
 
 /// A name that nothing has, in the same folder and so on the same disk; short, however long the other name is.
@@ -87,7 +89,7 @@ void NumberFileWriter::fail() const {
   const bool is_forbidden = reason == EACCES || reason == EPERM || reason == EROFS;
   const char* const advice = reason == ENOENT         ? "make its folder"
                              : reason == ENAMETOOLONG ? "shorten it"
-                             : is_forbidden           ? "allow it"
+                             : is_forbidden           ? k_forbidden_advice
                                                       : "make room";
   throw InputError(message("path: ", path_, " cannot be written: ", std::strerror(reason), "; ", advice,
                            " or choose another place (what was there before has not changed)"));
