@@ -33,7 +33,7 @@ install_for() {
 }
 # What pytest, hypothesis and meshio need, as --no-deps has to name it; numpy, scipy and pygeodesic have their versions per platform.
 test_packages=(pytest==9.* pytest-timeout==2.* pluggy iniconfig packaging pygments colorama hypothesis==6.* sortedcontainers
-  click==8.* trimesh==5.* meshio==5.* rich markdown-it-py mdurl tqdm==4.* joblib==1.*)
+  click==8.* trimesh==5.* meshio==5.* rich markdown-it-py mdurl tqdm==4.* joblib==1.* cloudpickle)
 elsewhere=(-p no:cacheprovider --timeout=600)  # a test that hangs ends them all, by its name
 
 # --- Windows ----------------------------------------------------------------------------------------------------------
