@@ -311,3 +311,50 @@ def test_domes_of_a_sphere_do_not_cross_and_are_closed():
     tallest = np.full(30, -1.0)
     np.maximum.at(tallest, np.repeat(made.triangle_cell, 3), height[made.triangles].ravel())
     assert tallest.min() > 0.07 and tallest.max() < 0.101
+
+
+def test_each_cell_has_its_own_gap_inset_and_thickness() -> None:
+    by = np.linspace(0.0, 2.0, 9)
+    lengths = {"gap": 0.2, "inset": 0.1, "thickness": 0.3}
+    for name in lengths:
+        factor = {f"{other}_by": by if other == name else np.ones(9) for other in lengths}
+        mesh = build_cell_mesh(*squares(), CellShape(**lengths, **factor))
+        assert_islands(mesh)
+        assert not len(mesh.thinner) and not len(mesh.crossing) and not len(mesh.vanished)
+        for cell in range(9):
+            gap, inset, thickness = (length * factor[f"{of}_by"][cell] for of, length in lengths.items())
+            places = mesh.vertices[np.unique(mesh.triangles[mesh.triangle_cell == cell])]
+            # The board's border is no boundary: a cell has as many sides as it has neighbors.
+            sides = np.array([2 - (cell // axis % 3 != 1) for axis in (1, 3)])
+            np.testing.assert_allclose(np.ptp(places[:, :2], axis=0), 1.0 - 0.5 * gap * sides, atol=1e-9)
+            np.testing.assert_allclose(places[:, 2].max(), thickness, atol=1e-9)
+            top = places[places[:, 2] > thickness - 1e-9]
+            if thickness > 0.0:
+                np.testing.assert_allclose(np.ptp(top[:, :2], axis=0), 1.0 - (0.5 * gap + inset) * sides, atol=1e-9)
+
+
+def test_cells_without_a_gap_of_different_heights_have_walls_between_them() -> None:
+    by = np.arange(1.0, 5.0)
+    mesh = build_cell_mesh(*strips(), CellShape(thickness=0.1, thickness_by=by, underside=True))
+    assert_islands(mesh)
+    assert (edge_uses(mesh.triangles) == 2).all()
+    np.testing.assert_allclose(signed_volume(mesh.vertices, mesh.triangles), 0.1 * by.sum(), rtol=1e-9)
+
+
+def test_paint_too_faint_to_be_seen_is_none() -> None:
+    shape = {"gap": 0.2, "inset": 0.1, "thickness": 0.3}
+    faint, none = (
+        build_cell_mesh(*squares(), CellShape(**shape, **{f"{name}_by": np.full(9, by) for name in shape}))
+        for by in (1e-9, 0.0)
+    )
+    np.testing.assert_array_equal(faint.vertices, none.vertices)
+    assert not np.ptp(faint.vertices[:, 2])
+
+
+def test_domes_of_cells_with_heights_of_their_own() -> None:
+    by = np.linspace(0.5, 1.5, 9)
+    shape = CellShape(gap=0.1, thickness=0.2, dome=1.0, gap_by=by, thickness_by=by)
+    mesh = build_cell_mesh(*squares(), shape)
+    for cell in range(9):
+        places = mesh.vertices[np.unique(mesh.triangles[mesh.triangle_cell == cell])]
+        assert 0.95 * 0.2 * by[cell] <= places[:, 2].max() <= 0.2 * by[cell] + 1e-12

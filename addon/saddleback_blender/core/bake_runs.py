@@ -8,7 +8,7 @@ import tempfile
 import weakref
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from . import cache as cache_module
 from . import native
 from .cache import Cache
+from .cell_runs import shape_of_each
 from .errors import BadInputError
 from .images.exr import exr_bytes
 from .images.png import png_bytes
@@ -77,6 +78,8 @@ def bake(request: BakeRequest, progress: Progress, cache: Cache | None = None) -
     cache = cache or cache_module.shared
     _, _, solved, _ = solved_cells(request.cells, progress, cache)
     _check_cells(request, solved.cells)
+    if request.settings.profile == "CELLS":
+        request = replace(request, shape=shape_of_each(request.shape, request.cells, solved.cells.sites))
     _check_numbers(request, len(solved.cells.areas))
     baker = _Baker(request, solved, progress)
     try:
@@ -245,7 +248,7 @@ def _largest(reaches: list[_Reach]) -> _Reach:
 
 def _unit_of(label: str, request: BakeRequest, reach: _Reach) -> float:
     if label == "Height":
-        return request.shape.thickness
+        return float(np.max(request.shape.height))
     if request.settings.bits == "32":
         return 0.0
     return {"Edge Distance": reach.edge, "Local UV": reach.local}.get(label, 0.0)
@@ -290,12 +293,19 @@ def _finite(distance: NDArray[np.floating], farthest: float) -> NDArray[np.float
 
 def _height(distance: NDArray[np.floating], cell: Indices, shape: CellShape, farthest: Reals) -> NDArray[np.floating]:
     """The share of the thickness (k, width, 1), as the output Cells is raised."""
-    inside = distance - shape.rim_start
-    plateau = np.clip(inside / shape.inset, 0.0, 1.0) if shape.inset > 0.0 else (inside > 0.0).astype(np.float64)
-    room = np.append(np.maximum(farthest - shape.rim_start, 1e-300), 1.0)[cell]
-    within = np.clip(inside / room, 0.0, 1.0)
+    start, width, height = (
+        np.append(np.broadcast_to(lengths, len(farthest)), 0.0)
+        for lengths in (shape.rim_start, shape.rim_width, shape.height)
+    )
+    inside = distance - start[cell]
+    plateau = (inside > 0.0).astype(np.float64)
+    np.divide(inside, width[cell], out=plateau, where=width[cell] > 0.0)
+    plateau = np.clip(plateau, 0.0, 1.0)
+    within = np.clip(inside / np.maximum(np.append(farthest, 1.0) - start, LEAST)[cell], 0.0, 1.0)
     round_share = np.sqrt(within * (2.0 - within))
     share = (1.0 - shape.dome) * plateau + shape.dome * round_share
+    if shape.thickness_by is not None:
+        share *= (height / max(height.max(), LEAST))[cell]
     return np.where(cell >= 0, share, 0.0)[:, :, None]
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from . import native
 from .cache import Cache
 from .progress import Progress
-from .requests import digest
+from .requests import Surface, TessellateRequest, digest
 from .results import CellMesh, Reals
 from .settings import TessellateSettings, Voronoi2dSettings
 from .solids.cell_mesh import CellPieces, CellShape, cell_pieces, raise_cells
@@ -29,19 +29,35 @@ def shape_of(settings: TessellateSettings | Voronoi2dSettings) -> CellShape:
     return CellShape(settings.gap, settings.inset, settings.thickness, settings.underside, dome)
 
 
+def shape_of_each(shape: CellShape, request: TessellateRequest, sites: Any) -> CellShape:
+    """The same with what each cell's lengths are multiplied by: what was painted where its site (n,) is."""
+    gap, inset, thickness = (at_sites(request.surface, sites, values) for values in vars(request.paint).values())
+    return replace(shape, gap_by=gap, inset_by=inset, thickness_by=thickness)
+
+
+def at_sites(surface: Surface, sites: Any, values: Reals | None) -> Reals | None:
+    """(V,) values of the Blender mesh's vertices -> (n,) those where sites are."""
+    if values is None:
+        return None
+    corners = surface.gather(values)[surface.triangles[sites.faces]]
+    found: Reals = np.einsum("ni,ni->n", sites.barycentric, corners)
+    return found
+
+
 def cells_of(
     mesh: Any, split: Any, shape: CellShape, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> CellMesh:
     """The cells of the library's split mesh of its `mesh`, which `key` names. Only what changed is computed."""
     count = int(np.max(split.triangle_cell, initial=0)) + 1
-    reach = max(shape.thickness, SMOOTHED * math.sqrt(mesh.area / count)) if shape.thickness > 0.0 else 0.0
+    highest = float(np.max(shape.height, initial=0.0))
+    reach = max(highest, SMOOTHED * math.sqrt(mesh.area / count)) if highest > 0.0 else 0.0
 
     def pieces() -> CellPieces:
         way = directions(mesh, split, reach, progress)
         return cell_pieces(split.vertices, split.triangles, split.triangle_cell, way, shape)
 
     def raised() -> CellMesh:
-        part = ("cell pieces", *key, digest(shape.gap, shape.inset, shape.is_round, reach))
+        part = ("cell pieces", *key, digest(shape.rim_start, shape.rim_width, shape.differs, shape.is_round, reach))
         return raise_cells(cache.get(part, pieces, lambda found: found.nbytes), shape, progress)
 
     whole = ("cell mesh", *key, digest(*astuple(shape)))

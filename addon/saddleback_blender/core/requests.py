@@ -192,6 +192,15 @@ Density = Reals | CurvatureDensity | DistanceDensity | SpreadDensity
 
 
 @dataclass(frozen=True)
+class CellPaint:
+    """What lengths of cells are multiplied by at the Blender mesh's vertices (V,), None: by nothing."""
+
+    gap: Reals | None = None
+    inset: Reals | None = None
+    thickness: Reals | None = None
+
+
+@dataclass(frozen=True)
 class TessellateRequest:
     """One tessellation. `density` and `sites` speak of the Blender mesh's vertices."""
 
@@ -201,6 +210,7 @@ class TessellateRequest:
     sites: Points | None = None  # None: place `settings.count`
     marked_edges: Indices | None = None  # (n, 2) of the Blender mesh: some of the count stay on them
     marks: EdgeMarks | None = None  # of the Blender mesh, for the dual mesh to inherit
+    paint: CellPaint = CellPaint()
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     live: LiveCells | None = None  # shown the cells while they are relaxed

@@ -14,7 +14,7 @@ import numpy as np
 from . import cache as cache_module
 from . import native
 from .cache import Cache
-from .cell_runs import cells_of, shape_of
+from .cell_runs import cells_of, shape_of, shape_of_each
 from .density_runs import density_of
 from .fields.curve_points import curves_on_surface, points_along
 from .flowing_cells import UNSEEN
@@ -60,7 +60,8 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
             found = cache.get(("edge distance", *key), lambda: _edge_distance(surface, split), lambda a: a.nbytes)
         result = replace(result, edge_distance=surface.spread(found, np.inf))
     if has_mesh:
-        made = cells_of(mesh, split, shape_of(settings), key, progress, cache)
+        shape = shape_of_each(shape_of(settings), request, solved.cells.sites)
+        made = cells_of(mesh, split, shape, key, progress, cache)
         result = replace(result, mesh=made)
     if settings.makes_polygons:
         result = replace(result, polygons=_polygons(request, mesh, solved, key, progress, cache))

@@ -79,6 +79,10 @@ class TessellateSettings(DensitySettings, PatternSettings):
     thickness: float = 0.0
     thickness_share: float = 8.0
     dome: float = 0.0  # 0: a plateau; 1: round from the rim to the middle
+    # Vertex groups or attributes by which the three are multiplied, as they are where each cell's site is; "" = none:
+    gap_by: str = ""
+    inset_by: str = ""
+    thickness_by: str = ""
     underside: bool = False
     local_uv: bool = False
     cell_faces: str = "SURFACE"  # SURFACE = as many as the surface has, ONE = a polygon for each cell

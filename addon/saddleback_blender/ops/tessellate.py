@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import prefs
 from ..blocks import find
-from ..bridge.inputs.density import read_density
+from ..bridge.inputs.density import read_cell_paint, read_density
 from ..bridge.inputs.mesh_in import mesh_of, read_marks
 from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
@@ -45,7 +45,7 @@ from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
 from ..core.mirrored_runs import halved
 from ..core.progress import Progress
-from ..core.requests import Surface, TessellateRequest
+from ..core.requests import CellPaint, Surface, TessellateRequest
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from ..core.standing import with_anchors
@@ -75,6 +75,7 @@ def read_request(
     if settings.sites_source == "SIZE":
         settings = replace(settings, sites_source="COUNT", count=count_of_size(surface, settings.cell_size))
     sites = read_sites(context, source, mesh, settings)
+    has_mesh = settings.make_cells and not settings.makes_polygons
     marks = read_marks(mesh) if settings.hold_marked or settings.make_dual else None
     return TessellateRequest(
         surface=surface,
@@ -83,6 +84,7 @@ def read_request(
         sites=sites,
         marked_edges=marks.edges if marks is not None and settings.hold_marked else None,
         marks=marks,
+        paint=read_cell_paint(source, mesh, settings) if has_mesh else CellPaint(),
         threads=prefs.threads(context),
         disk=prefs.disk_cache(context, settings.cache_on_disk),
     )

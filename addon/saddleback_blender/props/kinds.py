@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..looks import LOOKS, NO_LOOK, of_operator
@@ -50,9 +51,22 @@ def use_modifiers() -> Any:
     )
 
 
-def name_of(label: str, description: str, default: str = "") -> Any:
-    """The name of something in the file, or of an attribute."""
-    return StringProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})
+def name_of(label: str, description: str, default: str = "", search: Any = None) -> Any:
+    """The name of something in the file, or of an attribute; `search` gives those to choose from."""
+    return StringProperty(
+        name=label, description=description, default=default, options={"SKIP_SAVE"},
+        **({} if search is None else {"search": search}),
+    )  # fmt: skip
+
+
+def painted_names(_settings: Any, context: bpy.types.Context, _typed: str) -> list[str]:
+    """Names of what was painted on the active object: groups, numbers, colors."""
+    item = context.object
+    if item is None or item.type != "MESH":
+        return []
+    kinds = ("FLOAT", "FLOAT_COLOR", "BYTE_COLOR")
+    attributes = [found.name for found in item.data.attributes if found.data_type in kinds]
+    return [*item.vertex_groups.keys(), *(name for name in attributes if not name.startswith("."))]
 
 
 def length(label: str, description: str, default: float, least: float = 0.0) -> Any:

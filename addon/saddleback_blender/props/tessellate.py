@@ -9,7 +9,20 @@ from typing import Any
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
-from .kinds import choice, detail, length, lengths, look, name_of, on_disk, quality, share, switch, use_modifiers
+from .kinds import (
+    choice,
+    detail,
+    length,
+    lengths,
+    look,
+    name_of,
+    on_disk,
+    painted_names,
+    quality,
+    share,
+    switch,
+    use_modifiers,
+)
 from .region import LAYER_SETTINGS
 
 SITES_SOURCES = (
@@ -86,6 +99,8 @@ EVENNESS = EnumProperty(
     name="Evenness", description="How even the cells become, and how long that takes", items=EVENNESS_ITEMS,
     get=_evenness, set=_set_evenness, options={"SKIP_SAVE"},
 )  # fmt: skip
+
+BY = "The vertex group, attribute or color attribute that says of each cell by what to multiply"
 
 TESSELLATE: dict[str, Any] = {
     "count": IntProperty(
@@ -168,6 +183,9 @@ TESSELLATE: dict[str, Any] = {
         subtype="FACTOR",
         options={"SKIP_SAVE"},
     ),
+    "gap_by": name_of("Gap By", f"{BY} the gap where its center is", search=painted_names),
+    "inset_by": name_of("Bevel By", f"{BY} the bevel where its center is", search=painted_names),
+    "thickness_by": name_of("Thickness By", f"{BY} the thickness where its center is", search=painted_names),
     "underside": switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
     "local_uv": switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
     "cell_faces": choice("Cell Faces", "How many faces a cell has", CELL_FACES, "SURFACE"),

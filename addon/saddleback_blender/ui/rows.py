@@ -135,16 +135,25 @@ def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
         layout.prop(settings, "cell_faces", text="Faces")
         layout = layout.column()
         layout.active = settings.cell_faces == "SURFACE"
-    draw_length(layout, settings, "gap")
-    draw_length(layout, settings, "thickness")
+    _draw_painted_length(layout.column(), settings, "gap")
+    _draw_painted_length(layout.column(), settings, "thickness")
     column = layout.column()
     column.active = (settings.thickness_share if is_relative(settings) else settings.thickness) > 0.0
-    draw_length(column, settings, "inset")
+    _draw_painted_length(column.column(), settings, "inset")
     if hasattr(settings, "dome"):  # cells of the plane have a plateau
         column.prop(settings, "dome")
     column.prop(settings, "underside")
     if hasattr(settings, "local_uv"):  # cells of the plane have none
         layout.prop(settings, "local_uv")
+
+
+def _draw_painted_length(layout: bpy.types.UILayout, settings: Any, name: str) -> None:
+    """A length of cells, and what it is multiplied by."""
+    draw_length(layout, settings, name)
+    if hasattr(settings, f"{name}_by"):  # cells of the plane are all alike
+        row = layout.row()
+        row.active = (getattr(settings, f"{name}_share") if is_relative(settings) else getattr(settings, name)) > 0.0
+        row.prop(settings, f"{name}_by", text="By")
 
 
 def draw_centers(layout: bpy.types.UILayout, settings: Any) -> None:

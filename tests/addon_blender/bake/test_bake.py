@@ -116,6 +116,21 @@ def test_heights_rise_as_the_looks_do():
     assert bpy.data.images["CELLS Height"]["saddleback_reach"] == pytest.approx(0.1)
 
 
+def test_heights_as_cells_are_those_that_were_painted():
+    item = plate()
+    group = item.vertex_groups.new(name="Tall")
+    for vertex in item.data.vertices:
+        group.add([vertex.index], vertex.co.x, "REPLACE")
+    lengths = {"gap": 0.02, "inset": 0.05, "thickness": 0.1, "gap_by": "Tall", "thickness_by": "Tall"}
+    bpy.ops.saddleback.tessellate(count=6, make_cells=True, make_centers=True, **lengths, **QUICK)
+    bpy.ops.saddleback.bake(resolution=128, bits="32", profile="CELLS", cell_as="NUMBER", image_prefix="CELLS")
+    height, edge, cell = (images()[f"CELLS {name}"][:, :, 0] for name in ("Height", "Edge Distance", "Cell"))
+    by = centers(item)[:, 0]
+    own = by[cell.astype(int)]
+    assert np.allclose(height, np.clip((edge - 0.01 * own) / 0.05, 0, 1) * own / by.max(), atol=1e-5)
+    assert bpy.data.images["CELLS Height"]["saddleback_reach"] == pytest.approx(0.1 * by.max())
+
+
 def test_directions_are_those_of_the_field():
     item = plate()
     item.rotation_euler = (0.0, 0.0, 0.5)

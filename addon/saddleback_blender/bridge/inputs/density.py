@@ -13,8 +13,8 @@ from ...core.errors import BadInputError
 from ...core.fields import density as density_maths
 from ...core.fields.density import DensityError
 from ...core.fields.image_colors import colors_at
-from ...core.requests import CurvatureDensity, Density, DistanceDensity, SpreadDensity
-from ...core.settings import DensitySettings
+from ...core.requests import CellPaint, CurvatureDensity, Density, DistanceDensity, SpreadDensity
+from ...core.settings import DensitySettings, TessellateSettings
 from .curves_in import read_curves
 from .groups_in import group_numbers
 from .images_in import read_tiles
@@ -27,6 +27,7 @@ NUMBER_TYPES = {
     "BOOLEAN": ("value", np.bool_),
 }
 ANOTHER_DENSITY = "choose another density"
+ANOTHER_NAME = "choose another name"
 
 
 def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DensitySettings) -> Density | None:
@@ -150,6 +151,33 @@ def read_color(
     attribute.data.foreach_get("color", colors)
     values = density_maths.channel(colors.reshape(-1, 4), channel)
     return to_vertices(mesh, values, attribute.domain), f"color attribute '{name}'"
+
+
+def read_cell_paint(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: TessellateSettings) -> CellPaint:
+    """By what the lengths of cells are multiplied. Raises BadInputError."""
+    names = {"gap": settings.gap_by, "inset": settings.inset_by, "thickness": settings.thickness_by}
+    return CellPaint(**{what: _read_factors(source, mesh, name) for what, name in names.items() if name})
+
+
+def _read_factors(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> NDArray[np.float64]:
+    if name in source.vertex_groups:
+        values, label = read_vertex_group(source, mesh, name, ANOTHER_NAME)
+    elif name in mesh.color_attributes:
+        values, label = read_color(source, mesh, name, "LUMINANCE")
+    elif name in mesh.attributes:
+        values, label = read_attribute(source, mesh, name)
+    else:
+        raise BadInputError(
+            f"'{source.name}' has no vertex group and no attribute '{name}' for the cells' lengths; paint one, or "
+            f"{ANOTHER_NAME}"
+        )
+    wrong = np.flatnonzero(~((values >= 0.0) & np.isfinite(values)))
+    if len(wrong):
+        raise BadInputError(
+            f"'{source.name}': {label} is {values[wrong[0]]:g} at vertex {wrong[0]}, and lengths can be multiplied by "
+            f"0 and more only; paint it anew, or {ANOTHER_NAME}"
+        )
+    return values
 
 
 def read_mask(source: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[NDArray[np.float64], str]:

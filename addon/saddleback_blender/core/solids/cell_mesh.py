@@ -25,6 +25,7 @@ from .room import Solid, fit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Lengths = float | Floats  # one, or one for each cell
 
 POSITION, DIRECTION, DISTANCE, WITHIN = slice(0, 3), slice(3, 6), 6, 7
 # Of the way from a cell's rim to its middle: where a dome has lines of vertices, close together where it is steep.
@@ -33,6 +34,9 @@ DOME_STEP = 0.6  # as long as edges are at most, of half a cell's size
 DOME_SMOOTHING = 8  # rounds, which take the ridges from where two sides of a cell are equally near
 # A level line is off by this share of its distance from the boundary at most.
 LEVEL_TOLERANCE = 0.2
+# Of cells with lengths of their own: more levels than that are too many, and none is below this share of the largest.
+MANY_LEVELS, LEAST_LEVEL = 4, 0.02
+LEAST_FACTOR = 0.01  # paint that is fainter is none: slopes and joints of such cells would be thinner than rounding
 END = 0.99  # of the run's progress
 # A place without room becomes lower by this factor, down to a share of the height that could as well be flat.
 THINNER, LEAST_SHARE, PATIENCE = 0.5, 0.02, 4
@@ -49,6 +53,10 @@ class CellShape:
     thickness: float = 0.0
     underside: bool = False  # close each cell from below
     dome: float = 0.0  # 0: a plateau; 1: round from the rim to the middle
+    # Of each cell, by its number (n,), what its lengths are multiplied by; None: by nothing.
+    gap_by: Floats | None = None
+    inset_by: Floats | None = None
+    thickness_by: Floats | None = None
 
     def __post_init__(self) -> None:
         for name in ("gap", "inset", "thickness"):
@@ -64,14 +72,40 @@ class CellShape:
         return self.dome > 0.0 and self.thickness > 0.0
 
     @property
-    def rim_start(self) -> float:
-        """Distance from the cell boundary at which the cell begins."""
-        return 0.5 * self.gap
+    def rim_start(self) -> Lengths:
+        """Distance from the cell boundary at which the cell begins, of each cell where they differ."""
+        return _times(0.5 * self.gap, self.gap_by)
 
     @property
-    def rim_end(self) -> float:
+    def rim_width(self) -> Lengths:
+        """The inset, of each cell where they differ."""
+        return _times(self.inset, self.inset_by)
+
+    @property
+    def height(self) -> Lengths:
+        """The thickness, of each cell where they differ."""
+        return _times(self.thickness, self.thickness_by)
+
+    @property
+    def rim_end(self) -> Lengths:
         """Distance from the cell boundary at which the plateau begins."""
-        return 0.5 * self.gap + self.inset
+        return self.rim_start + self.rim_width
+
+    @property
+    def differs(self) -> bool:
+        """Tells whether cells have lengths of their own."""
+        return any(by is not None for by in (self.gap_by, self.inset_by, self.thickness_by))
+
+    @property
+    def levels(self) -> list[float]:
+        """The distances from the cell boundary at which the mesh is cut; of many, those that are far apart."""
+        found = np.unique([*np.ravel(self.rim_start), *np.ravel(self.rim_end)])
+        found = found[found > LEAST_LEVEL * found[-1]]
+        if len(found) > MANY_LEVELS:
+            step = np.log1p(LEVEL_TOLERANCE)
+            found = np.exp(step * np.unique(np.rint(np.log(found) / step)))
+        levels: list[float] = found.tolist()
+        return levels
 
     @property
     def cuts(self) -> bool:
@@ -112,20 +146,57 @@ def cell_pieces(
     if shape.cuts and len(triangles):
         segments, _ = find_boundary(len(fields), triangles, cells)
         opened = open_chords(fields, triangles, segments)
-        levels = [level for level in (shape.rim_start, shape.rim_end) if level > 0.0]
+        levels = shape.levels
         if shape.is_round:
             middle = 0.5 * math.sqrt(_doubled_areas(fields[:, POSITION], triangles).sum() / (2 * len(present)))
-            levels = sorted({*levels, *(shape.rim_start + share * middle for share in DOME_LINES)})
+            levels = sorted({*levels, *(np.max(shape.rim_start) + share * middle for share in DOME_LINES)})
             opened = _split_long(opened, DOME_STEP * middle)
         fields, triangles, cells = native.load().refine_to_cell_boundary(
             opened.fields, opened.triangles, cells[opened.parent], levels, LEVEL_TOLERANCE
         )
-        if shape.gap > 0.0:
-            outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
-            fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
-            kept = ~_is_crumb(fields[:, POSITION], triangles, cells)
-            triangles, cells = triangles[kept], cells[kept]
+    if shape.differs:
+        fields, triangles = _apart(fields, triangles, cells)
+    if shape.gap > 0.0 and len(triangles):
+        outer = _cut_at_distance(fields, triangles, cells, shape.rim_start, 1.0)
+        fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
+        kept = ~_is_crumb(fields[:, POSITION], triangles, cells)
+        triangles, cells = triangles[kept], cells[kept]
     return CellPieces(*drop_unused(fields, triangles), cells, present)
+
+
+def _times(length: float, by: Floats | None) -> Lengths:
+    return float(length) if by is None else length * np.where(by < LEAST_FACTOR, 0.0, by)
+
+
+def _of_each(lengths: Lengths, triangles: Ints, cells: Ints, count: int) -> Floats:
+    """Lengths of cells -> those (count,) of the cells that vertices are in, which share none where they differ."""
+    if isinstance(lengths, float):
+        return np.full(count, lengths)
+    own = np.zeros(count)
+    own[triangles] = lengths[cells][:, None]
+    return own
+
+
+def _apart(fields: Floats, triangles: Ints, cells: Ints) -> tuple[Floats, Ints]:
+    """Gives each cell vertices of its own. O(m log m)."""
+    key = cells.astype(np.int64)[:, None] * len(fields) + triangles
+    kept, corners = np.unique(key, return_inverse=True)
+    return fields[kept % len(fields)], corners.reshape(-1, 3).astype(np.int32)
+
+
+def _cut_at_distance(fields: Floats, triangles: Ints, cells: Ints, lengths: Lengths, otherwise: float) -> Cut:
+    """Cuts along a distance from the boundary, one for each cell. What has a distance of 0 is not cut, but taken for
+    above where `otherwise` is above 0.
+    """
+    if isinstance(lengths, float):
+        return cut_at_level(fields, triangles, DISTANCE, lengths)
+    own = _of_each(lengths, triangles, cells, len(fields))
+    beyond = np.where(own > 0.0, fields[:, DISTANCE] - own, otherwise)
+    cut = cut_at_level(np.column_stack([fields, beyond]), triangles, fields.shape[1], 0.0)
+    found = np.ascontiguousarray(cut.fields[:, :-1])
+    ends = _of_each(lengths, cut.triangles, cells[cut.parent], len(found))
+    found[len(fields) :, DISTANCE] = ends[len(fields) :]  # to the last bit: a rim as high as rounding is no rim
+    return replace(cut, fields=found)
 
 
 def _doubled_areas(positions: Floats, triangles: Ints) -> Floats:
@@ -167,21 +238,23 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
     thickness but no inset the sides are upright walls.
     """
     fields, triangles, cells = pieces.fields, pieces.triangles, pieces.cells
-    cuts = [(DISTANCE, shape.rim_end)] if shape.inset > 0.0 else []
+    if shape.inset > 0.0 and len(triangles):
+        ends = shape.rim_end if isinstance(shape.rim_width, float) else np.where(shape.rim_width > 0, shape.rim_end, 0)
+        inner = _cut_at_distance(fields, triangles, cells, ends, -1.0)
+        fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
     if shape.is_round:
         fields = np.column_stack([fields, _way_to_middle(fields[:, DISTANCE], triangles, cells, shape)])
-        cuts += [(WITHIN, share) for share in DOME_LINES]
-    for column, level in cuts if len(triangles) else []:
-        inner = cut_at_level(fields, triangles, column, level)
-        fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
+        for share in DOME_LINES if len(triangles) else ():
+            inner = cut_at_level(fields, triangles, WITHIN, share)
+            fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
     is_left = np.zeros(pieces.present.max(initial=-1) + 1, dtype=np.bool_)
     is_left[cells] = True
     vanished = pieces.present[~is_left[pieces.present]]
     if shape.thickness > 0.0:
-        height = shape.thickness * _plateau_share(fields[:, DISTANCE], shape)
+        height = _plateau_share(fields[:, DISTANCE], triangles, cells, shape)
         if shape.is_round:
-            round_share = _dome_share(fields[:, WITHIN], triangles, progress)
-            height = (1.0 - shape.dome) * height + shape.dome * shape.thickness * round_share
+            height = (1.0 - shape.dome) * height + shape.dome * _dome_share(fields[:, WITHIN], triangles, progress)
+        height = _of_each(shape.height, triangles, cells, len(fields)) * height
         raised = raise_surface(fields[:, :6], triangles, height, shape.underside)
         solid = Solid(raised.triangles, raised.place, len(raised.base), raised.at, THINNER, LEAST_SHARE, PATIENCE)
         fitted = fit(solid, find_crossings, END, "making room for the cells", progress)
@@ -198,11 +271,11 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
 
 def _way_to_middle(distance: Floats, triangles: Ints, cells: Ints, shape: CellShape) -> Floats:
     """How far (V,) from its cell's rim to the place farthest from it each vertex is: 0 to 1. O(m)."""
-    farthest = np.full(int(cells.max(initial=0)) + 1, shape.rim_start)
+    farthest = np.zeros(int(cells.max(initial=0)) + 1)
     np.maximum.at(farthest, np.repeat(cells, 3), distance[triangles].ravel())
-    own = np.zeros(len(distance), np.int32)
-    own[triangles] = cells[:, None]
-    within: Floats = (distance - shape.rim_start) / np.maximum(farthest[own] - shape.rim_start, 1e-300)
+    start = _of_each(shape.rim_start, triangles, cells, len(distance))
+    room = _of_each(farthest, triangles, cells, len(distance)) - start
+    within: Floats = (distance - start) / np.maximum(room, 1e-300)
     return np.clip(within, 0.0, 1.0)
 
 
@@ -217,11 +290,12 @@ def _dome_share(within: Floats, triangles: Ints, progress: Progress) -> Floats:
     return round_share
 
 
-def _plateau_share(distance: Floats, shape: CellShape) -> Floats:
+def _plateau_share(distance: Floats, triangles: Ints, cells: Ints, shape: CellShape) -> Floats:
     """The height (V,) as a part of the thickness: from 0 where the cell begins to 1 on the plateau."""
-    if shape.inset == 0.0:
-        return np.ones_like(distance)
-    return np.clip((distance - shape.rim_start) / shape.inset, 0.0, 1.0)
+    start, width = (_of_each(of, triangles, cells, len(distance)) for of in (shape.rim_start, shape.rim_width))
+    beyond = distance - start
+    rising = np.divide(beyond, width, out=np.ones_like(distance), where=width > 0.0)
+    return np.clip(rising, 0.0, 1.0)
 
 
 def drop_unused(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
