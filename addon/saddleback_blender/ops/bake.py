@@ -30,6 +30,7 @@ from ..core.solids.cell_mesh import CellShape
 from ..looks import LOOKS
 from ..props import existing_group, keep_settings, kept_settings, settings_of
 from ..props.bake import BAKE
+from ..props.kept_sites import kept_sites
 from .base import SurfaceOperator
 from .tessellate import read_request
 
@@ -61,11 +62,19 @@ class SADDLEBACK_OT_bake(SurfaceOperator, bpy.types.Operator):
         cells = existing_group(source, "tessellate")
         if cells is None or not cells.told:
             raise BadInputError(f"'{source.name}' has no cells yet to bake: press Tessellate first")
-        chosen = kept_settings(source, "tessellate", TessellateSettings)
-        if chosen.mirror_x:
-            raise BadInputError(f"'{source.name}': mirrored cells cannot be baked; switch X Mirror off and tessellate")
+        chosen, sites = kept_settings(source, "tessellate", TessellateSettings), kept_sites(source)
+        if sites is None and chosen.mirror_x:
+            raise BadInputError(
+                f"'{source.name}': it is not known where its mirrored cells are: press Tessellate first"
+            )
+        if sites is not None:  # nothing needs to be found again
+            chosen = replace(chosen, relax_sites=False, density_source="UNIFORM")
+            if chosen.sites_source not in ("COUNT", "SIZE"):
+                chosen = replace(chosen, sites_source="COUNT", count=len(sites))
         with mesh_of(context, source, chosen.use_modifiers) as mesh:
             request = read_request(context, source, mesh, chosen, _measured)
+            if sites is not None:
+                request = replace(request, sites=sites)
             baked = _request(source, mesh, settings, request, prefs.threads(context))
         shown = holder(context, source, chosen.use_modifiers)
         seen = None if shown is None else _seen_cells(shown.data, chosen.cell_attribute)

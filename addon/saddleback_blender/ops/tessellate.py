@@ -50,6 +50,7 @@ from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from ..core.standing import with_anchors
 from ..props import keep_settings, settings_of
+from ..props.kept_sites import keep_sites
 from ..props.tessellate import TESSELLATE
 from .base import ALL_SELECTED, SurfaceOperator
 
@@ -150,6 +151,7 @@ class CellsOperator(SurfaceOperator):
             else:
                 self.drop(source, role)
         keep_settings(chosen, "tessellate", source)
+        keep_sites(source, result.sites_position)
         if warning:
             self.report({"WARNING"}, warning)
         shell = "" if result.shell is None else shell_of(result.shell, *_units(context.scene))

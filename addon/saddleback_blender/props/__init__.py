@@ -31,6 +31,7 @@ from .bake import BAKE
 from .direction_field import DIRECTION_FIELD, DIRECTION_FIELD_BEGIN
 from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
+from .kept_sites import SITES
 from .path import PATH, PATH_BEGIN
 from .region import LAYER_SETTINGS
 from .repair import REPAIR
@@ -114,7 +115,10 @@ def _kept(settings_name: str) -> dict[str, Any]:
             )  # fmt: skip
         else:
             kept[name] = _followed(prop, {"default": begin[name]} if name in begin else {})
-    return kept | ({"evenness": EVENNESS} if settings_name == "tessellate" else {})
+    if settings_name == "tessellate":
+        kept["evenness"] = EVENNESS
+        kept[SITES] = StringProperty(name="Sites", description="Centers of the last cells", options={"HIDDEN"})
+    return kept
 
 
 class SaddlebackTessellateProps(bpy.types.PropertyGroup):
@@ -305,8 +309,8 @@ def forget_texts(source: bpy.types.Object) -> None:
     kept = [(owner, name) for owner in owners for name in LAYER_KINDS if owner.is_property_set(name)]
     groups = [existing_group(source, "repair"), *(getattr(owner, name) for owner, name in kept)]
     for group in groups:
-        for name in (TOLD, FIGURES):
-            if group is not None and group.is_property_set(name):
+        for name in (TOLD, FIGURES, SITES):
+            if group is not None and name in group.bl_rna.properties and group.is_property_set(name):
                 rollback.remember_setting(group, name)
                 group.property_unset(name)
 

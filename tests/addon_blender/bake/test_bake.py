@@ -263,9 +263,7 @@ def test_cells_on_the_mesh_and_on_what_modifiers_make():
     item.modifiers.new("Finer", "SUBSURF").subdivision_type = "SIMPLE"
     bpy.ops.saddleback.tessellate(count=7, use_modifiers=True, **QUICK)
     assert bpy.ops.saddleback.bake(resolution=32) == {"FINISHED"}
-    item.saddleback.tessellate.count = 8
-    with pytest.raises(RuntimeError, match="its cells are not those of its settings"):
-        bpy.ops.saddleback.bake(resolution=32)
+    assert item.saddleback.bake.told.startswith("'Plate': 7 cells")
 
 
 def refused(text, **settings):
@@ -305,16 +303,79 @@ def test_without_cells_or_a_uv_map():
     refused("'Plate' has no UV map; unwrap it")
 
 
-def test_cells_that_are_others_than_the_settings_say():
-    item = tessellated()
+def baked_cells(size=60):
+    """The number of the cell in each pixel, and places in the unit square."""
+    bpy.ops.saddleback.bake(resolution=size, bits="32", cell_as="NUMBER", margin=0)
+    ticks = (np.arange(size) + 0.5) / size
+    places = np.stack(np.meshgrid(ticks, ticks), axis=2).reshape(-1, 2)
+    return images()["Plate Cell"][:, :, 0].ravel(), places
+
+
+def assert_nearest(cells, places, sites):
+    """Each place has the cell of the site next to it, unless two are about as near."""
+    distance = np.linalg.norm(places[:, None] - sites, axis=2)
+    sure = np.diff(np.sort(distance, axis=1)[:, :2], axis=1)[:, 0] > 1e-4
+    assert sure.mean() > 0.95
+    assert (cells[sure] == distance.argmin(axis=1)[sure]).all()
+
+
+def test_cells_are_those_that_are_seen_whatever_the_settings_are_by_now():
+    item = plate()
+    bpy.ops.saddleback.tessellate(count=5, make_centers=True, **QUICK)
+    sites = centers(item)[:, :2]
     item.saddleback.tessellate.count = 9
-    refused("its cells are not those of its settings")
+    item.saddleback.tessellate.seed = 3
+    cells, places = baked_cells()
+    assert_nearest(cells, places, sites)
+
+
+def test_cells_of_another_mesh_are_refused():
+    item = tessellated()
+    item.data.vertices[10].co.x += 0.02  # a small change of the shape is none of the cells
+    bpy.ops.saddleback.bake(resolution=16)
+    for vertex in item.data.vertices:
+        vertex.co.x *= 5.0
+    refused("its cells are not those that are seen, since its mesh or its settings were changed")
+
+
+def test_cells_that_were_relaxed_live():
+    item = plate()
+    bpy.ops.saddleback.relax_live(count=9, make_centers=True, **QUICK)
+    cells, places = baked_cells()
+    assert_nearest(cells, places, centers(item)[:, :2])
 
 
 def test_mirrored_cells():
+    item = plate()
+    for vertex in item.data.vertices:
+        vertex.co.x -= 0.5
+    bpy.ops.saddleback.tessellate(count=16, make_centers=True, mirror_x=True, **QUICK)
+    sites = centers(item)[:, :2] + (0.5, 0.0)
+    cells, places = baked_cells()
+    assert len(np.unique(cells)) == len(sites) and (sites[:, 0] < 0.45).any() and (sites[:, 0] > 0.55).any()
+    assert_nearest(cells, places, sites)
+
+
+def test_mirrored_cells_of_a_file_in_which_their_places_are_not_kept():
+    item = plate()
+    for vertex in item.data.vertices:
+        vertex.co.x -= 0.5
+    bpy.ops.saddleback.tessellate(count=16, mirror_x=True, **QUICK)
+    item.saddleback.tessellate.property_unset("sites")
+    refused("it is not known where its mirrored cells are: press Tessellate first")
+
+
+def test_kept_places_belong_to_their_layer_and_go_with_the_results():
     item = tessellated()
-    item.saddleback.mirror_x = True
-    refused("mirrored cells cannot be baked")
+    first = item.saddleback.tessellate.sites
+    bpy.ops.saddleback.layer_add()
+    assert not item.saddleback.tessellate.sites
+    bpy.ops.saddleback.tessellate(count=7, **QUICK)
+    assert item.saddleback.tessellate.sites not in ("", first)
+    item.saddleback.layer_index = 0
+    assert item.saddleback.tessellate.sites == first
+    bpy.ops.saddleback.clear()
+    assert not item.saddleback.tessellate.sites
 
 
 def test_an_image_of_somebody_else():

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the centers of the cells are that were made last: kept on the object, for what is made of these cells later."""
+
+from __future__ import annotations
+
+import base64
+
+import bpy
+import numpy as np
+
+from .. import rollback
+from ..bridge.inputs.mesh_in import from_world, to_world
+from ..core.results import Reals
+
+SITES = "sites"  # on the settings of Tessellate: places in the object's own space, as text
+MOST_KEPT = 100_000  # a file need not carry more: what needs them makes them anew
+
+
+def keep_sites(source: bpy.types.Object, places: Reals) -> None:
+    """Keeps world places (n, 3)."""
+    group = source.saddleback.tessellate
+    own = from_world(source, places) if len(places) <= MOST_KEPT else places[:0]
+    text = base64.b64encode(np.ascontiguousarray(own, "<f8").tobytes()).decode("ascii")
+    rollback.remember_setting(group, SITES)
+    setattr(group, SITES, text)
+
+
+def kept_sites(source: bpy.types.Object) -> Reals | None:
+    """World places (n, 3) of the centers of the last cells; None where they are not known."""
+    group = source.saddleback.tessellate
+    if not group.is_property_set(SITES):
+        return None
+    own = np.frombuffer(base64.b64decode(getattr(group, SITES)), "<f8").reshape(-1, 3)
+    return to_world(source, own) if len(own) else None
