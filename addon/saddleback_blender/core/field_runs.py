@@ -19,7 +19,7 @@ from .fields.given_fields import painted_directions
 from .fields.stream_lines import even_streamlines
 from .graphs import mesh_of_surface
 from .progress import Progress
-from .requests import DirectionFieldRequest, SingularPlace, digest
+from .requests import DirectionFieldRequest, SingularPlace, Surface, digest
 from .results import FieldResult, Indices, Reals, SurfaceArrows
 from .surfaces.normals import normals_at
 from .surfaces.point_grid import even_points
@@ -44,7 +44,7 @@ def direction_field(request: DirectionFieldRequest, progress: Progress, cache: C
     field = made.field
     progress.check()
     if settings.domain == "FACE":
-        directions = _of_polygons(mesh, field.vectors, request.polygons)
+        directions = _of_polygons(mesh, surface, field.vectors, request.polygons)
     else:
         own = field.directions(np.arange(len(surface.vertices), dtype=np.int32))
         directions = np.stack([surface.spread(np.ascontiguousarray(column), 0.0) for column in own.T], axis=1)
@@ -177,12 +177,12 @@ def _told(text: str, labels: Sequence[str]) -> str:
     return text + ("; add empties of that index, or change theirs" if is_sum else "")
 
 
-def _of_polygons(mesh: Any, vectors: Reals, polygons: Indices | None) -> Reals:
-    """(polygons, 3) the direction of each polygon's largest triangle."""
+def _of_polygons(mesh: Any, surface: Surface, vectors: Reals, polygons: Indices | None) -> Reals:
+    """(polygons, 3) the direction of each polygon's largest triangle; zero where the surface is not."""
     assert polygons is not None
     directions = np.zeros((int(polygons.max(initial=-1)) + 1, 3))
     order = np.argsort(mesh.face_areas, kind="stable")
-    directions[polygons[order]] = vectors[order]  # the last one written, the largest, stays
+    directions[surface.of_part(polygons)[order]] = vectors[order]  # the last one written, the largest, stays
     return directions
 
 

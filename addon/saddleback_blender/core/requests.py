@@ -79,6 +79,10 @@ class Surface:
         """Numbers of triangles -> numbers among the Blender mesh's."""
         return faces if self.kept is None else self.kept[faces]
 
+    def of_part(self, values: NDArray[Number]) -> NDArray[Number]:
+        """Values of the Blender mesh's triangles, in their first axis -> those of the surface's."""
+        return values if self.kept is None else values[self.kept]
+
     def compact(self, vertices: NDArray[np.integer]) -> Indices:
         """Numbers in `vertices` of the Blender mesh's vertices, -1 for loose ones."""
         if self.used is None:

@@ -148,7 +148,7 @@ class DistanceSettings(RegionSettings):
 
 
 @dataclass(frozen=True)
-class PathSettings:
+class PathSettings(RegionSettings):
     """All properties of `saddleback.path`; lengths are world units."""
 
     points: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURSOR
@@ -169,7 +169,7 @@ class PathSettings:
 
 
 @dataclass(frozen=True)
-class Voronoi2dSettings:
+class Voronoi2dSettings(RegionSettings):
     """All properties of `saddleback.voronoi_2d`; lengths are world units, objects are given by name ("" = none)."""
 
     space: str = "OUTLINE"  # AUTO, OUTLINE, UV, DISK
@@ -208,7 +208,7 @@ class Voronoi2dSettings:
 
 
 @dataclass(frozen=True)
-class DirectionFieldSettings:
+class DirectionFieldSettings(RegionSettings):
     """All properties of `saddleback.direction_field`; lengths are world units, "" is no object or collection."""
 
     symmetry: str = "1"  # 1 = vectors, 2 = lines, 4 = crosses

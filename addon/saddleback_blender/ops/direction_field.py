@@ -12,7 +12,8 @@ import bpy
 import numpy as np
 
 from ..bridge.inputs.directions_in import read_painted
-from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
+from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
+from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.singularities_in import read_singularities
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.inputs.strokes_in import read_strokes
@@ -41,7 +42,7 @@ class FieldOperator(SurfaceOperator):
         names = {"direction_attribute": settings.direction_attribute}
         check_attribute_names(source, names, {"direction_attribute": "FLOAT_VECTOR"}, settings.domain)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
-            surface = read_surface(source, mesh)
+            surface = read_part(source, mesh, settings)
             request = DirectionFieldRequest(
                 surface=surface,
                 settings=self.measured(settings, surface),

@@ -10,7 +10,8 @@ from functools import partial
 import bpy
 
 from .. import prefs
-from ..bridge.inputs.mesh_in import mesh_of, read_surface
+from ..bridge.inputs.mesh_in import mesh_of
+from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_path_points
 from ..bridge.outputs.out_curves import write_paths
 from ..core import path_runs
@@ -32,7 +33,7 @@ class PathOperator(SurfaceOperator):
         """Reads everything from Blender."""
         settings = settings_of(self, PathSettings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
-            surface = read_surface(source, mesh)
+            surface = read_part(source, mesh, settings)
             request = PathRequest(
                 surface=surface,
                 settings=self.measured(settings, surface),

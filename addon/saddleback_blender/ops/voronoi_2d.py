@@ -12,7 +12,8 @@ import numpy as np
 
 from .. import prefs
 from ..blocks import find
-from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
+from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
+from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.voronoi_in import read_darkness, read_uv, read_voronoi_sites
 from ..bridge.outputs.following import Follower
 from ..bridge.outputs.out_cells import write_cells, write_polygons
@@ -24,7 +25,7 @@ from ..core.errors import BadInputError
 from ..core.figures import cell_faults_of, lost_of
 from ..core.progress import Progress
 from ..core.requests import Surface, Voronoi2dRequest
-from ..core.results import FlatCells, Voronoi2dResult
+from ..core.results import FlatCells, Reals, Voronoi2dResult
 from ..core.settings import Voronoi2dSettings
 from ..core.solids.edge_network import EdgeNetwork
 from ..core.surfaces.plane_frame import is_flat
@@ -48,7 +49,7 @@ class PlaneOperator(SurfaceOperator):
         _check(source, settings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             sites, weights = read_voronoi_sites(context, source, mesh, settings)
-            surface = read_surface(source, mesh)
+            surface = read_part(source, mesh, settings)
             is_found = settings.space == "AUTO"
             steps = settings.iterations if _moves(settings) else 0
             settings = replace(settings, space=_space(surface, mesh, settings), iterations=steps)
@@ -59,8 +60,8 @@ class PlaneOperator(SurfaceOperator):
             request = Voronoi2dRequest(
                 surface=surface,
                 settings=sized,
-                polygons=read_triangle_polygons(mesh),
-                uv=read_uv(source, mesh, settings.uv_name) if settings.space == "UV" else None,
+                polygons=surface.of_part(read_triangle_polygons(mesh)),
+                uv=_uv(source, mesh, surface, settings),
                 is_mirrored=source.matrix_world.determinant() < 0,
                 sites=sites,
                 weights=weights,
@@ -110,6 +111,12 @@ class SADDLEBACK_OT_voronoi_2d(PlaneOperator, bpy.types.Operator):
     bl_description = "Divide a flat mesh, or a surface through its UV map, into the cells of a plane Voronoi diagram"
     bl_options = {"REGISTER", "UNDO"}
     __annotations__ = VORONOI_2D | ALL_SELECTED
+
+
+def _uv(source: bpy.types.Object, mesh: bpy.types.Mesh, surface: Surface, settings: Voronoi2dSettings) -> Reals | None:
+    if settings.space != "UV":
+        return None
+    return surface.of_part(read_uv(source, mesh, settings.uv_name).reshape(-1, 3, 2)).reshape(-1, 2)
 
 
 def _space(surface: Surface, mesh: bpy.types.Mesh, settings: Voronoi2dSettings) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from bpy.props import FloatProperty, IntProperty
 
 from .kinds import choice, length, lengths, name_of, share, switch, use_modifiers
+from .region import REGION
 from .tessellate import TESSELLATE
 
 SYMMETRIES = (
@@ -95,5 +96,6 @@ DIRECTION_FIELD: dict[str, Any] = {
     "streamline_radius": length("Radius", "Half the thickness of the lines", 0.005),
     "streamline_radius_share": share("Radius", "Half the thickness of the lines, in percent of the extent", 0.2),
     "seed": TESSELLATE["seed"],
+    **REGION,
 }  # fmt: skip
 DIRECTION_FIELD_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE"}

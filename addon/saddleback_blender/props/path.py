@@ -20,6 +20,7 @@ from .kinds import (
     switch,
     use_modifiers,
 )
+from .region import REGION
 
 PATH_POINTS = (
     *DISTANCE_SOURCES[:3],
@@ -47,5 +48,6 @@ PATH: dict[str, Any] = {
     "path_radius_share": share("Radius", "Half the thickness of the paths, in percent of the extent", 0.4),
     "lift": length("Lift", "How far the paths run above the surface", 0.0),
     "lift_share": share("Lift", "How far the paths run above the surface, in percent of the extent", 0.0),
+    **REGION,
 }
 PATH_BEGIN: dict[str, Any] = {"points": "CURSOR", "use_modifiers": True, "lengths": "RELATIVE"}

@@ -8,6 +8,7 @@ from typing import Any
 from bpy.props import IntProperty
 
 from .kinds import choice, name_of, switch, use_modifiers
+from .region import REGION
 from .tessellate import SITES_SOURCES, TESSELLATE
 
 SPACES = (
@@ -67,6 +68,7 @@ VORONOI_2D: dict[str, Any] = {
     "frame_end": IntProperty(
         name="End", description="Frame in which all edges are there", default=120, options={"SKIP_SAVE"}
     ),
+    **REGION,
 }
 VORONOI_2D_BEGIN: dict[str, Any] = {
     "space": "AUTO",

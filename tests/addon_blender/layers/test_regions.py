@@ -82,6 +82,72 @@ def test_shapes_and_the_remesh_stay_in_the_region():
     assert {dual.material_slots[polygon.material_index].name for polygon in dual.data.polygons} == {"Belly"}
 
 
+def with_material(item, name, is_inside):
+    """Gives a material to the faces whose centers are inside."""
+    for label in ("Skin", name):
+        item.data.materials.append(bpy.data.materials.new(label))
+    item.data.polygons.foreach_set(
+        "material_index", np.array([is_inside(p.center) for p in item.data.polygons], np.int32)
+    )
+    return {"region": "MATERIAL", "region_name": name}
+
+
+def test_paths_do_not_leave_the_region():
+    """Of a square with a notch: from one arm to the other the way leads around it."""
+    item = grid("Square", 20)
+    region = with_material(item, "Arms", lambda place: abs(place.x - 0.5) > 0.2 or place.y < 0.25)
+    select(item, [20 * 21, 20 * 21 + 20])  # the upper corners
+    bpy.ops.saddleback.path()
+    assert bpy.data.objects["Square Paths"]["saddleback_length"] == pytest.approx(1.0, rel=1e-5)
+    bpy.ops.saddleback.path(**region, quality="EXACT")
+    around = 2 * np.hypot(0.3, 0.75) + 0.4
+    assert bpy.data.objects["Square Paths"]["saddleback_length"] == pytest.approx(around, rel=1e-5)
+    select(item, [20 * 21 + 10, 0])
+    with pytest.raises(RuntimeError, match="the point at vertex 430 belongs to no face of the layer's region"):
+        bpy.ops.saddleback.path()
+
+
+@pytest.mark.parametrize("domain", ["POINT", "FACE"])
+def test_a_field_is_zero_outside_of_the_region(domain):
+    item = sphere("Ball", 3)
+    half(item, "MATERIAL")
+    bpy.ops.saddleback.direction_field(
+        region="MATERIAL", region_name="Belly", domain=domain, make_streamlines=True, arrow_count=100
+    )
+    data = item.data.attributes["saddleback_direction"].data
+    vectors = np.empty(3 * len(data), np.float32)
+    data.foreach_get("vector", vectors)
+    length = np.linalg.norm(vectors.reshape(-1, 3), axis=1)
+    if domain == "POINT":
+        heights = positions(item.data)[:, 2]
+    else:
+        heights = np.array([polygon.center.z for polygon in item.data.polygons])
+    assert len(length) == len(heights)
+    assert not length[heights < -0.2].any() and (length[heights > 0.2] > 0.9).all()
+    assert positions(bpy.data.objects["Ball Arrows"].data)[:, 2].min() > -0.2
+
+
+@pytest.mark.parametrize("space", ["OUTLINE", "UV"])
+def test_diagrams_are_of_the_region_alone(space):
+    """A square whose half is folded up, and whose other half alone is laid out in the UV map."""
+    item = grid("Square", 12)
+    for vertex in item.data.vertices:
+        vertex.co.z = max(vertex.co.x - 0.5, 0.0)
+    layer = item.data.uv_layers.new(name="Flat")
+    for loop in item.data.loops:
+        place = item.data.vertices[loop.vertex_index].co
+        layer.data[loop.index].uv = (min(place.x, 0.5), place.y)
+    region = with_material(item, "Floor", lambda place: place.x < 0.5)
+    with pytest.raises(RuntimeError, match="'Square'"):
+        bpy.ops.saddleback.voronoi_2d(space=space, count=12)
+    bpy.ops.saddleback.voronoi_2d(space=space, count=12, make_cells=True, **region)
+    cells = bpy.data.objects["Square Voronoi Cells"].data
+    places = positions(cells)
+    assert abs(places[:, 2]).max() < 1e-6
+    np.testing.assert_allclose([places.min(axis=0)[:2], places.max(axis=0)[:2]], [[0, 0], [0.5, 1]], atol=1e-6)
+    assert sum(polygon.area for polygon in cells.polygons) == pytest.approx(0.5, rel=1e-5)
+
+
 def test_two_layers_cover_two_halves():
     item = sphere("Ball")
     half(item, "MATERIAL")
@@ -115,7 +181,7 @@ def test_a_region_chosen_before_the_first_run_counts():
         ("FACES", "", "'Ball' has no attribute '' for the region; select faces and press Take Selected Faces"),
     ],
 )
-@pytest.mark.parametrize("operator", ["tessellate", "distribute", "distance"])
+@pytest.mark.parametrize("operator", ["tessellate", "distribute", "distance", "path", "voronoi_2d", "direction_field"])
 def test_a_region_without_faces_is_told_and_changes_nothing(region, name, sentence, operator):
     item = sphere("Ball")
     item.vertex_groups.new(name="Nobody")
