@@ -145,7 +145,8 @@ WindowMesh::WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, const
   const Mesh& mesh = unfolding.mesh();
   unit_ = mesh.mean_edge_length();
   records_.resize(edges.halfedges.size() + 1);
-  records_.back() = {0, 0, k_none, k_none, 0, 0};
+  // Kernels read the first one in lanes without a window, laid or not, and look up the labels of the slots it leads to.
+  records_[0] = records_.back() = {0, 0, k_none, k_none, 0, 0};
   targets_.resize(edges.halfedges.size());
   lengths_.resize(edges.halfedges.size());
   saddles_.resize(vertices.size());
