@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tessellation/cells/edge_envelope.h"
+#include "tessellation/cells/bisectors/edge_envelope.h"
 #include "tessellation/log_map/site_labels.h"
 
 namespace saddleback {

@@ -7,8 +7,8 @@
 
 #include "saddleback/mesh/mesh.h"
 
+#include "tessellation/cells/bisectors/edge_envelope.h"
 #include "tessellation/cells/cell_candidates.h"
-#include "tessellation/cells/edge_envelope.h"
 
 namespace saddleback {
 

@@ -1,5 +1,5 @@
 #pragma once
-// The partition of one face among the cells of several sites.
+// The partition of one face by the bisectors of several sites.
 
 #include <array>
 #include <cstdint>

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "tessellation/cells/bisectors/face_partition.h"
 #include "tessellation/cells/face_candidates.h"
-#include "tessellation/cells/face_partition.h"
 
 namespace saddleback {
 

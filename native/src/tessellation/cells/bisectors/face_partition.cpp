@@ -1,11 +1,11 @@
-#include "tessellation/cells/face_partition.h"
+#include "tessellation/cells/bisectors/face_partition.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "predicates/orient_3d.h"
 #include "predicates/plane_predicates.h"
-#include "tessellation/cells/edge_envelope.h"
+#include "tessellation/cells/bisectors/edge_envelope.h"
 
 namespace saddleback {
 namespace {

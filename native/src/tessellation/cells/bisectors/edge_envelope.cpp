@@ -1,4 +1,4 @@
-#include "tessellation/cells/edge_envelope.h"
+#include "tessellation/cells/bisectors/edge_envelope.h"
 
 #include <algorithm>
 
