@@ -42,7 +42,7 @@ int main() {
     const sb::Shape star = sb::shapes::star();
     sb::DistributionOptions options;
     options.counts = {50};
-    options.size = {0.1};
+    options.size = {{0.1}};
     const sb::DistributionResult stars = sb::distribute(mesh, {&star, 1}, options);
     std::printf("stars %zu\n", stars.placements.size());
   } catch (const sb::Error& error) {

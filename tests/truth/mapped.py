@@ -299,8 +299,8 @@ def poses_of(surface: Unrolled, shapes: list[sb.Shape], placements: sb.Placement
 
 @guards("distribute", "Distribution", "Distribution.outline", "Distribution.conform", on="nothing")
 def laid_copies(rng: Random) -> None:
-    """No two copies meet and none leaves the surface, by polygons in fractions; sizes, counts and gaps are those asked
-    for.
+    """No two copies meet and none leaves the surface, by polygons in fractions; sizes, directions, counts and gaps are
+    those asked for, of each class its own; what lies there stays.
     """
     surface = Unrolled(rng)
     shapes = [sb.Shape.star(5), sb.Shape([regular(12, 1.0), regular(12, 0.6)]), sb.Shape.needle(6)]
@@ -308,15 +308,33 @@ def laid_copies(rng: Random) -> None:
     counts = rng.integers(0, 4, 3)
     counts[0] += 1
     low = float(rng.uniform(0.5, 1))
-    laid = sb.distribute(
-        surface.mesh, shapes, counts, size=size, gap=gap, size_range=(low, 1), seed=int(rng.integers(1000)),
-        mirror=bool(rng.random() < 0.5), mode=str(rng.choice(["random", "packed"])), threads=1,
-    )  # fmt: skip
+    sizes = size * np.where(rng.random() < 0.5, 1.0, rng.uniform(0.5, 1, 3)) * np.ones(3)
+    fields = [sb.direction_field(surface.mesh, 1).turned(float(rng.uniform(0, 7))) for _ in range(3)]
+    orders = {
+        "size": sizes if rng.random() < 0.5 else [np.full(surface.mesh.vertex_count, own) for own in sizes],
+        "field": fields, "gap": gap, "size_range": (low, 1), "mirror": bool(rng.random() < 0.5),
+        "mode": str(rng.choice(["random", "packed"])), "threads": 1,
+    }  # fmt: skip
+    if rng.random() < 0.3:
+        orders["density"] = rng.uniform(0.1, 1, (3, surface.mesh.vertex_count))
+    laid = sb.distribute(surface.mesh, shapes, counts, seed=int(rng.integers(1000)), **orders)
+    if rng.random() < 0.5:
+        kept = laid.placements[rng.random(len(laid)) < 0.5]
+        laid = sb.distribute(surface.mesh, shapes, counts, around=kept, seed=int(rng.integers(1000)), **orders)
+        assert laid.placements[: len(kept)].angle.tobytes() == kept.angle.tobytes()
+        assert laid.placements[: len(kept)].center.barycentric.tobytes() == kept.center.barycentric.tobytes()
     found = np.bincount(laid.placements.shape, minlength=3)
     assert (found <= counts).all()
     assert laid.stop_reason != "counts" or (found == counts).all()
-    scales = laid.placements.scale
-    assert ((scales >= size * low * (1 - 1e-9)) & (scales <= size * (1 + 1e-9))).all()
+    scales, own = laid.placements.scale, sizes[laid.placements.shape]
+    assert ((scales >= own * low * (1 - 1e-9)) & (scales <= own * (1 + 1e-9))).all()
+    for i in range(len(laid)):
+        center, angle = laid.placements.center[i], laid.placements.angle[i]
+        a, b, c = surface.mesh.vertices[surface.mesh.triangles[center.faces[0]]]
+        x = (b - a) / np.linalg.norm(b - a)
+        y = np.cross(np.cross(x, c - a) / np.linalg.norm(np.cross(x, c - a)), x)
+        along = fields[laid.placements.shape[i]].directions(center)[0]
+        np.testing.assert_allclose(np.cos(angle) * x + np.sin(angle) * y, along, atol=1e-6)
     layout = poses_of(surface, shapes, laid.placements)
     for i in range(len(laid)):
         loops = layout.loops(i)
@@ -350,25 +368,28 @@ def nothing_more_fits(rng: Random) -> None:
     heading = float(rng.uniform(0, 7))
     direction = np.array([np.cos(heading), np.sin(heading), 0])
     field = sb.DirectionField.from_vectors(surface.mesh, np.tile(direction, (surface.mesh.face_count, 1)), 1)
-    shape = sb.Shape(regular(int(rng.integers(3, 7)), 1.0))
-    size = float(rng.uniform(0.1, 0.3))
-    laid = sb.distribute(surface.mesh, shape, None, field, size=size, maximal=True, tolerance=0.05, threads=1)
+    shapes = [sb.Shape(regular(int(rng.integers(3, 7)), 1.0)) for _ in range(int(rng.integers(1, 3)))]
+    sizes, turns = rng.uniform(0.1, 0.3, len(shapes)), rng.uniform(0, 7, len(shapes))
+    fields = [field.turned(float(turn)) for turn in turns]
+    laid = sb.distribute(surface.mesh, shapes, None, fields, size=sizes, maximal=True, tolerance=0.05, threads=1)
     proof = laid.certificate
     assert proof is not None
     assert proof.leaves <= proof.cells
     assert len(proof.uncertified) == 0 or proof.uncertified_area > 0
     if laid.stop_reason != "full" or proof.uncertified_area > 0:
         return
-    assert 0 < proof.tolerance <= 0.05 * size * (1 + 1e-9)
-    layout = poses_of(surface, [shape], laid.placements)
+    assert 0 < proof.tolerance <= 0.05 * sizes.max() * (1 + 1e-9)
+    layout = poses_of(surface, shapes, laid.placements)
     loops = [layout.loops(i) for i in range(len(laid))]
     others = np.array([center for _, center, *_ in layout.poses])
-    turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
     for center in rng.random((60, 2)):
-        tried = center + size * shape.loops[0] @ turn
+        which = int(rng.integers(len(shapes)))
+        angle = heading + turns[which]
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        tried = center + sizes[which] * shapes[which].loops[0] @ turn
         if min(tried.min(), (1 - tried).min()) < proof.tolerance:
             continue
-        near = np.flatnonzero(np.hypot(*(others - center).T) < 2 * size + proof.tolerance).tolist()
+        near = np.flatnonzero(np.hypot(*(others - center).T) < 2 * sizes.max() + proof.tolerance).tolist()
         meets = any(
             overlap([tried], loops[k]) or least_distance([tried], loops[k]) < proof.tolerance + ROUNDING for k in near
         )

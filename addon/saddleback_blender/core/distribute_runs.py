@@ -20,12 +20,13 @@ from .field_runs import MadeField, field_of
 from .fields.given_fields import given_field
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .progress import Progress
-from .requests import DirectionFieldRequest, DistributeRequest, digest
+from .requests import DirectionFieldRequest, DistributeRequest, content_of
 from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
 from .settings import DistributeSettings
 from .shapes.bent_copies import bent_copies
 from .shapes.cut_shapes import cut_shapes
 from .shapes.overlapping import footprints, map_whole, tilted, tilted_frames
+from .shapes.shape_classes import class_densities, class_fields, class_sizes, kept_placements
 from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
 from .shapes.shape_templates import ShapeTemplate, sized
 from .surfaces.local_frames import anchored
@@ -129,6 +130,9 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         return graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
 
     density = density_of(request.density, surface, settings, mesh, graph, progress)
+    densities = class_densities(request.classes, surface, density, mesh)
+    fields = class_fields(request.classes, surface, None if field is None else field.field, mesh)
+    around = None if request.kept is None else kept_placements(request.kept, mesh, surface.name)
     forbidden = None if request.forbidden is None else _forbidden_faces(request, mesh)
     options: dict[str, Any] = {
         "size_range": (1.0 - settings.size_variation, 1.0),
@@ -140,29 +144,29 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         "seed": settings.seed,
         "shares": None if settings.maximal else [template.share for template in templates],
     }
-    if density is not None and settings.maximal and not settings.size_by_density:
+    if densities is not None and settings.maximal and not settings.size_by_density:
         progress.note("Where shapes fill the surface the density has no say in their number; let it rule their size")
-    elif density is not None and not (settings.size_by_density and (settings.maximal or settings.packing > 0)):
-        options["density"] = density  # where shapes fill the surface their sizes alone say how many there are
+    elif densities is not None and not (settings.size_by_density and (settings.maximal or settings.packing > 0)):
+        options["density"] = densities  # where shapes fill the surface their sizes alone say how many there are
     if forbidden is not None:
         options["forbidden"] = forbidden
-    field_key = (None, None) if field is None else (field.field.angles, field.field.symmetry)
+    field_key = [(own.angles, own.symmetry) for own in _listed(fields)]
     loops = [loop for outlines in parts for part in outlines for loop in part]
-    shared = digest(
-        *(value for item in sorted(options.items(), key=itemgetter(0)) for value in item), *field_key, *loops
-    )
+    shared = content_of([sorted(options.items(), key=itemgetter(0)), field_key, loops, request.kept])
 
     def place(size: float, count: int | None) -> Placed:
-        wanted = sizes(mesh, size, density if settings.size_by_density else None)
-        if room(mesh.area, wanted, options["size_range"][0], shapes) > MOST_ROOM:
+        shared_size = sizes(mesh, size, density if settings.size_by_density else None)
+        wanted = class_sizes(request.classes, surface, shared_size)
+        least = min(float(np.min(own)) for own in _listed(wanted))
+        if room(mesh.area, least, options["size_range"][0], shapes) > MOST_ROOM:
             raise BadInputError(f"'{surface.name}': {too_small(size)}")
-        key = (surface.key, digest(shared, wanted, count))
+        key = (surface.key, content_of([shared, wanted, count]))
 
         def lay() -> Any:
             with progress.stage(0.75, "laying shapes on the surface") as job:
                 return sb.distribute(
-                    mesh, shapes, count, field=None if field is None else field.field, size=wanted,
-                    threads=request.threads, job=job, **options,
+                    mesh, shapes, count, field=fields, size=wanted, around=around, threads=request.threads, job=job,
+                    **options,
                 )  # fmt: skip
 
         try:
@@ -178,7 +182,7 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     else:
         free = mesh.area if forbidden is None else float(np.asarray(mesh.face_areas)[~forbidden].sum()) or mesh.area
         if "density" in options and not settings.size_by_density:
-            free /= crowding(mesh, options["density"])
+            free /= max(crowding(mesh, own) for own in _listed(options["density"]))
         first = size_of(settings.count, settings.packing if fills else 0.0, fills, free, shapes, templates)
         placed = fitted_to_count(place, first, settings.count, fills, settings.maximal)
     warnings = () if field is None else field.notes
@@ -196,6 +200,11 @@ def _mapped(laid: Laid, request: DistributeRequest, progress: Progress, cache: C
             )
 
     return cache.get(("mapped shapes", *laid.key), lay, lambda found: BYTES_PER_SHAPE * len(found))
+
+
+def _listed(values: Any) -> list[Any]:
+    """What is given once for all, or once a class, as a list."""
+    return [] if values is None else list(values) if isinstance(values, list) else [values]
 
 
 def _overlap(settings: DistributeSettings, templates: Sequence[ShapeTemplate]) -> float:

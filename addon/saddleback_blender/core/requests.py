@@ -281,6 +281,26 @@ class DirectionFieldRequest:
 
 
 @dataclass(frozen=True)
+class ClassOrder:
+    """What one class of shapes has of its own; None: as all have it. Values (V,) are the Blender mesh's vertices'."""
+
+    density: Reals | None = None
+    direction: GivenDirections | float | None = None  # a number: degrees from the common field, counter-clockwise
+    size: Reals | None = None  # factors
+
+
+@dataclass(frozen=True)
+class KeptShapes:
+    """Shapes that lie there already, (n,) of each, in the world."""
+
+    shape: Indices
+    points: Reals  # (n, 3) centers
+    ahead: Reals  # (n, 3) their x axes
+    scales: Reals
+    mirrored: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
 class DistributeRequest:
     """Shapes to be laid on a surface without touching each other."""
 
@@ -290,6 +310,8 @@ class DistributeRequest:
     density: Density | None = None
     field: DirectionFieldRequest | GivenDirections | None = None  # None: the smoothest lines
     forbidden: NDArray[np.bool_] | None = None  # (V,) of the Blender mesh: where no shape may lie
+    classes: tuple[ClassOrder, ...] = ()  # one a template, or none
+    kept: KeptShapes | None = None
     threads: int = 0
     disk: DiskCache | None = None
 

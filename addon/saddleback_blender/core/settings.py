@@ -269,6 +269,7 @@ class DistributeSettings(DensitySettings, PatternSettings):
     direction_color: str = ""  # "" = the active one
     direction_image: str = ""
     forbidden_group: str = ""
+    keep: bool = False  # shapes of the output Instances as they lie; the others are laid around them
     use_modifiers: bool = False
     make_bent: bool = True
     fit: float = 0.01  # of bent copies: how far faces may leave the surface, in radii; 0 = their faces stay as they are

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from .. import prefs
+from ..bridge.inputs.classes_in import read_classes, read_kept
 from ..bridge.inputs.density import read_density, read_vertex_group
 from ..bridge.inputs.directions_in import read_directions, read_image_flow, read_painted, read_painted_flow
 from ..bridge.inputs.mesh_in import mesh_of
@@ -20,6 +21,7 @@ from ..bridge.inputs.shapes_in import read_templates
 from ..bridge.inputs.singularities_in import read_singularities
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.inputs.strokes_in import read_strokes
+from ..bridge.outputs.hand_edits import accept
 from ..bridge.outputs.out_collection import find_output
 from ..bridge.outputs.out_shape_cut import CUT_ROLE, write_cut
 from ..bridge.outputs.out_shapes import (
@@ -88,6 +90,9 @@ class ShapesOperator(SurfaceOperator):
         else:
             self.drop(source, BENT_ROLE)
         if settings.make_instances:
+            lying = find_output(source, INSTANCES_ROLE) if settings.keep else None
+            if lying is not None:
+                accept(lying)
             write_instances(context, source, result, self._templates, settings, follower)
         else:
             self.drop(source, INSTANCES_ROLE)
@@ -182,10 +187,13 @@ def _request(
     """Reads everything from Blender."""
     with mesh_of(context, source, settings.use_modifiers) as mesh:
         surface = read_part(source, mesh, settings)
+        templates = read_templates(context, source, settings)
         return DistributeRequest(
             surface=surface,
             settings=operator.measured(settings, surface, settings.count),
-            templates=read_templates(context, source, settings),
+            templates=templates,
+            classes=read_classes(source, mesh, settings),
+            kept=read_kept(source, templates, settings),
             density=read_density(source, mesh, settings),
             field=_read_field(context, source, mesh, settings, surface),
             forbidden=_read_forbidden(source, mesh, settings),

@@ -22,7 +22,8 @@ SHAPES = (
     (
         "COLLECTION",
         "Collection",
-        "Its meshes, closed curves, texts and images; their property 'share' says how many of each",
+        "Its meshes, closed curves, texts and images. Properties of each say what it has of its own: 'share', "
+        "'density', 'direction', 'size'",
     ),
     ("IMAGE", "Image", "Where an image is opaque or, without transparency, dark"),
 )
@@ -74,6 +75,10 @@ DISTRIBUTE: dict[str, Any] = {
     "direction_color": name_of("Color Attribute", "The flow map that shapes point along; empty means the active one"),
     "direction_image": name_of("Image", "The flow map that shapes point along"),
     "forbidden_group": name_of("Keep Off", "No shape lies where this vertex group's weights are above one half"),
+    "keep": switch(
+        "Keep", "The points of the output Instances stay as they lie, whatever was deleted, moved or turned by hand; "
+        "the others are laid anew around them", False,
+    ),
     **DENSITY,
     "use_modifiers": use_modifiers(),
     "make_bent": switch("Bent Copies", "Make one mesh of all shapes, bent onto the surface", True),

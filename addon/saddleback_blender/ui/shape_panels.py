@@ -142,6 +142,9 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         row.active = settings.make_bent and settings.shapes in ("COLLECTION", "IMAGE")
         rows.draw_automatic(row, settings, "thickness")
         layout.prop(settings, "make_instances")
+        row = layout.row()
+        row.active = settings.make_instances
+        row.prop(settings, "keep")
         layout.operator("saddleback.make_real", icon="OUTLINER_OB_MESH")
         layout.prop(settings, "make_outlines")
         row = layout.row()

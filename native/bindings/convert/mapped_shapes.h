@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "saddleback/field/direction_field.h"
 #include "saddleback/shape_mapping/conform.h"
 
 #include "convert/shapes.h"
@@ -22,7 +23,7 @@ struct MappedShapes {
   std::unique_ptr<Conformer> conformer;
 
   const Mesh& mesh() const;
-  const DirectionField* field() const;
+  std::vector<const DirectionField*> fields() const { return as_fields(field_object); }
   const Shape& shape(Index i) const { return shapes[placements[i].shape]; }
   /// An index, negative from the end. \throw IndexError out of range.
   Index checked(const py::object& index) const;

@@ -23,9 +23,11 @@ Args:
     shapes: a Shape or a sequence of Shapes.
     counts: None: as many as find room; or one integer a shape (one for all where there is one shape, or with shares).
     field: DirectionField of the mesh: x axes of the shapes point along one of its directions, chosen at random among those
-        that make a difference. None: the smoothest field of lines.
-    density: (V,) wanted number of copies per area, only ratios matter; needs counts.
-    size: scale of the shapes, mesh units for one unit of their planes: a number, or (V,).
+        that make a difference; or a sequence of them, one a shape. None: the smoothest field of lines.
+    density: (V,) wanted number of copies per area, only ratios matter; needs counts. Or one such array a shape, as (n, V)
+        or a sequence: each shape then follows its own.
+    size: scale of the shapes, mesh units for one unit of their planes: a number, or (V,); or one a shape: (n,), (n, V) or a
+        sequence of numbers and arrays. What is as long as there are vertices is one a vertex.
     seed: integer >= 0.
     mode: "random", or "packed": one beside the other in a front that sweeps over the surface, denser by a quarter and more;
         or a number from 0 (random) to 1 (packed).
@@ -36,6 +38,10 @@ Args:
     gap: least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
     size_range: (smallest, largest): every copy is scaled by another factor in this range.
     forbidden: (F,) booleans: faces that nothing may touch.
+    around: Placements of these shapes that lie on the surface already: the others are laid around them. They come first in
+        the result, as they are, and count as copies of their shapes, whatever the counts say. The others keep the gap to
+        them, or half of it where they lie nearer to the border than that; of themselves only that none meets another is
+        asked.
     mirror: half of the copies are mirrored, at random.
     bend: copies bend along the field's curves, as `map_shapes` lays them when given the field: for long shapes. Needs a
         field; not with maximal.
@@ -51,7 +57,8 @@ Raises:
     InputError: naming the argument: no shape; counts of another number than shapes, or negative; shares of another number,
         negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field
         or with maximal;
-        sizes or density of the wrong length, not finite or not positive; density zero everywhere, without counts or with
+        sizes or density of the wrong length, not finite or not positive; fields, sizes or densities of another number
+        than shapes; copies around which to lay that meet each other or do not fit where they are; density zero everywhere, without counts or with
         maximal; a copy larger than the surface, alone or with half of the gap around; everything forbidden.
     Cancelled: the job was.
 
@@ -113,29 +120,41 @@ std::vector<std::uint8_t> as_mask(const py::object& value) {
   return {array.data(), array.data() + array.size()};
 }
 
-const DirectionField* as_field(const py::object& value) {
-  if (value.is_none()) return nullptr;
-  if (!py::isinstance<DirectionField>(value))
-    throw InputError(
-        message("field: wanted a DirectionField, got a ", py::cast<std::string>(py::type::of(value).attr("__name__"))));
-  return &py::cast<const DirectionField&>(value);
+/// A list for all shapes, or one a shape. Numbers, as many as shapes, are one a shape, unless they are one a vertex.
+std::vector<std::vector<double>> as_lists(const py::object& value, const char* name, std::size_t shapes,
+                                          Index vertices) {
+  const auto is_list = [](const py::handle item) { return py::hasattr(item, "__len__"); };
+  if (!is_list(value) || py::isinstance<py::str>(value)) return {as_sizes(value, name)};
+  std::vector<py::object> items;
+  for (const py::handle item : value) items.push_back(py::reinterpret_borrow<py::object>(item));
+  std::vector<std::vector<double>> result;
+  if (std::any_of(items.begin(), items.end(), is_list)) {
+    for (const py::object& item : items) result.push_back(as_sizes(item, name));
+    return result;
+  }
+  const std::vector<double> values = as_sizes(value, name);
+  if (shapes < 2 || values.size() != shapes || shapes == static_cast<std::size_t>(vertices)) return {values};
+  for (const double own : values) result.push_back({own});
+  return result;
 }
 
 std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& shapes, const py::object& counts,
                                   const py::object& field, const py::object& density, const py::object& size,
                                   const py::object& seed, const py::object& mode, bool maximal,
                                   const py::object& shares, const py::object& gap, const py::object& size_range,
-                                  const py::object& forbidden, bool mirror, bool bend, const py::object& tolerance,
-                                  const py::object& threads, const py::object& job) {
+                                  const py::object& forbidden, const py::object& around, bool mirror, bool bend,
+                                  const py::object& tolerance, const py::object& threads, const py::object& job) {
   auto made = std::make_unique<Distribution>();
   const Mesh& mesh = mesh_of(graph, made->mesh);
   made->shapes = as_shapes(shapes, "shapes");
   DistributionOptions options;
   options.counts = as_counts(counts);
   if (!shares.is_none()) options.shares = as_sizes(shares, "shares");
-  options.field = as_field(field);
-  if (!density.is_none()) options.density = as_sizes(density, "density");
-  options.size = as_sizes(size, "size");
+  options.fields = as_fields(field);
+  const std::size_t shape_count = made->shapes.size();
+  if (!density.is_none()) options.density = as_lists(density, "density", shape_count, mesh.vertex_count());
+  options.size = as_lists(size, "size", shape_count, mesh.vertex_count());
+  if (!around.is_none()) options.around = as_placements(around, "around");
   options.seed = as_seed(seed, "seed");
   options.packing = as_packing(mode);
   options.maximal = maximal;
@@ -146,7 +165,7 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   options.forbidden = as_mask(forbidden);
   options.mirror = mirror;
   options.bend = bend;
-  made->field = bend ? field : py::none();
+  made->field = bend ? kept_fields(field) : py::none();
   options.tolerance = as_real(tolerance, "tolerance");
   options.threads = as_integer(threads, "threads");
   const JobIn token(job);
@@ -237,7 +256,8 @@ void bind_distribution(py::module_& m) {
   bind_certificate(m);
   py::class_<Distribution>(m, "Distribution", py::module_local(), "Copies of shapes on a surface; see `distribute`.")
       .def_readonly("mesh", &Distribution::mesh, "The mesh.")
-      .def_readonly("field", &Distribution::field, "The DirectionField that copies bend along, or None.")
+      .def_readonly("field", &Distribution::field,
+                    "The DirectionField that copies bend along, a tuple of one a shape, or None.")
       .def_property_readonly("shapes", &shapes_of, "List of the Shapes.")
       .def_property_readonly(
           "placements", [](const Distribution& self) { return Placements(self.result.placements); },
@@ -276,8 +296,8 @@ void bind_distribution(py::module_& m) {
         py::arg("field") = py::none(), py::arg("density") = py::none(), py::arg("size") = 1.0, py::arg("seed") = 0,
         py::arg("mode") = "random", py::arg("maximal") = false, py::kw_only(), py::arg("shares") = py::none(),
         py::arg("gap") = 0.0, py::arg("size_range") = py::make_tuple(1.0, 1.0), py::arg("forbidden") = py::none(),
-        py::arg("mirror") = false, py::arg("bend") = false, py::arg("tolerance") = 0.01, py::arg("threads") = 0,
-        py::arg("job") = py::none(), k_distribute_doc);
+        py::arg("around") = py::none(), py::arg("mirror") = false, py::arg("bend") = false, py::arg("tolerance") = 0.01,
+        py::arg("threads") = 0, py::arg("job") = py::none(), k_distribute_doc);
   let_travel<Distribution>(m, "Distribution", &save_distribution, &load_distribution);
 }
 

@@ -5,11 +5,15 @@
 
 namespace saddleback::bindings {
 
-Placements as_placements(const py::object& value, const Mesh& mesh, std::size_t shape_count) {
+const Placements& as_placements(const py::object& value, const char* argument) {
   if (!py::isinstance<Placements>(value))
-    throw InputError(message("placements: wanted a Placements, got a ",
+    throw InputError(message(argument, ": wanted a Placements, got a ",
                              py::cast<std::string>(py::type::of(value).attr("__name__"))));
-  const Placements& placements = py::cast<const Placements&>(value);
+  return py::cast<const Placements&>(value);
+}
+
+Placements as_placements(const py::object& value, const Mesh& mesh, std::size_t shape_count) {
+  const Placements& placements = as_placements(value, "placements");
   check_placements(mesh, shape_count, placements);
   return placements;
 }
@@ -62,6 +66,16 @@ Placements make_placements(const py::object& shape, const py::object& center, co
   return result;
 }
 
+/// Those of an index, a slice, or an array of booleans or indices, as NumPy picks them.
+Placements picked(const Placements& self, const py::object& index) {
+  const py::object numbers = py::module_::import("numpy").attr("arange")(self.size());
+  const py::object chosen = numbers[index];
+  Placements result;
+  for (const py::handle number : py::iter(py::module_::import("numpy").attr("atleast_1d")(chosen).attr("tolist")()))
+    result.push_back(self[py::cast<std::size_t>(number)]);
+  return result;
+}
+
 /// One value of every placement.
 template <class T, class Get>
 py::array column(const Placements& placements, Get get) {
@@ -104,6 +118,8 @@ void bind_placements(py::module_& m) {
           },
           "(n,) bool.")
       .def("__len__", &Placements::size)
+      .def("__getitem__", &picked, py::arg("index"),
+           "Placements of some: an integer, a slice, or an array of indices or booleans, as NumPy takes them.")
       .def("__repr__", [](const Placements& self) { return message("<Placements: ", self.size(), ">"); });
 }
 

@@ -25,7 +25,7 @@ Args:
     mesh: a mesh.
     shapes: a Shape or a sequence of them.
     placements: a Placements.
-    field: None for the exponential map, or a DirectionField of the same mesh.
+    field: None for the exponential map, or a DirectionField of the same mesh; or a sequence of them, one a shape.
     limits: (smallest, largest) factor by which lengths may change from the plane to the surface: the singular values.
     threads: 0 for all cores; never changes the result.
     job: progress and cancellation.
@@ -118,10 +118,6 @@ MapLimits as_limits(const py::object& value) {
 
 const Mesh& MappedShapes::mesh() const { return as_mesh(mesh_object, "mesh"); }
 
-const DirectionField* MappedShapes::field() const {
-  return field_object.is_none() ? nullptr : &py::cast<const DirectionField&>(field_object);
-}
-
 Index MappedShapes::checked(const py::object& index) const {
   const Index i = as_integer(index, "i"), count = static_cast<Index>(placements.size());
   if (i < -count || i >= count) throw py::index_error(message("copy ", i, " is out of range, there are ", count));
@@ -141,13 +137,12 @@ std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const p
   auto result = std::make_unique<MappedShapes>();
   result->mesh_object = mesh_object;
   const Mesh& mesh = result->mesh();
-  if (!field.is_none() && !py::isinstance<DirectionField>(field)) throw InputError("field: wanted a DirectionField");
-  result->field_object = field;
+  result->field_object = kept_fields(field);
   result->shapes = as_shapes(shapes, "shapes");
   result->placements = as_placements(placements, mesh, result->shapes.size());
   result->limits = as_limits(limits);
   const JobIn token(job);
-  const MapShapesOptions options{result->limits, result->field(), as_integer(threads, "threads"), token};
+  const MapShapesOptions options{result->limits, result->fields(), as_integer(threads, "threads"), token};
   without_gil([&] {
     result->mapped = map_shapes(mesh, result->shapes, result->placements, options);
     result->normals = vertex_normals(mesh);
@@ -226,7 +221,8 @@ Conformed conform_one(MappedShapes& self, const py::object& vertices, const py::
   const Index i = self.laid(index);
   const std::vector<Vec3> points = as_vertices(vertices);
   const Mesh& mesh = self.mesh();
-  const DirectionField* const field = self.field();
+  const MapShapesOptions laid{self.limits, self.fields()};
+  const DirectionField* const field = laid.field(self.placements[i].shape);
   return without_gil([&] {
     const std::lock_guard lock(self.mutex);
     if (!self.conformer) self.conformer = std::make_unique<Conformer>(mesh);
@@ -277,7 +273,7 @@ BentMeshes bend_all(const MappedShapes& self, const py::object& solids, const py
   const Mesh& mesh = self.mesh();
   const std::vector<Solid> given = as_solids(solids, self.shapes.size());
   const JobIn token(job);
-  const BendOptions options{{self.limits, self.field(), as_integer(threads, "threads"), token},
+  const BendOptions options{{self.limits, self.fields(), as_integer(threads, "threads"), token},
                             as_real(tolerance, "tolerance")};
   return without_gil([&] {
     BentMeshes result{bent_copies(mesh, self.shapes, self.placements, given, options), {}};
@@ -321,7 +317,7 @@ ShapeAttributes attributes_of(const MappedShapes& self, const py::object& reach,
   const double distance = as_real(reach, "reach");
   const Mesh& mesh = self.mesh();
   const JobIn token(job);
-  const MapShapesOptions options{self.limits, self.field(), as_integer(threads, "threads"), token};
+  const MapShapesOptions options{self.limits, self.fields(), as_integer(threads, "threads"), token};
   return without_gil([&] { return shape_attributes(mesh, self.shapes, self.placements, distance, options); });
 }
 

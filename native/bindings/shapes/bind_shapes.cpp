@@ -21,6 +21,28 @@ std::vector<Shape> as_shapes(const py::object& value, const char* argument) {
   return result;
 }
 
+std::vector<const DirectionField*> as_fields(const py::object& value) {
+  if (value.is_none()) return {};
+  std::vector<const DirectionField*> result;
+  const auto take = [&](const py::handle item, const std::string& name) {
+    if (!py::isinstance<DirectionField>(item))
+      throw InputError(message(name, ": wanted a DirectionField, got a ",
+                               py::cast<std::string>(py::type::of(item).attr("__name__"))));
+    result.push_back(&py::cast<const DirectionField&>(item));
+  };
+  if (!py::isinstance<py::sequence>(value)) {
+    take(value, "field");
+    return result;
+  }
+  for (const py::handle item : py::cast<py::sequence>(value)) take(item, message("field of shape ", result.size()));
+  if (result.empty()) throw InputError("field: wanted at least one DirectionField");
+  return result;
+}
+
+py::object kept_fields(const py::object& value) {
+  return py::isinstance<py::sequence>(value) ? py::object(py::tuple(value)) : value;
+}
+
 namespace {
 
 constexpr const char* k_shape_doc =

@@ -3407,6 +3407,8 @@ class Placements:
     def mirrored(self) -> NDArray[np.bool_]:
         """(n,) bool."""
     def __len__(self) -> int: ...
+    def __getitem__(self, index: SupportsIndex | slice | ArrayLike) -> Placements:
+        """Placements of some: an integer, a slice, or an array of indices or booleans, as NumPy takes them."""
 
 @final
 class ConformedPoints:
@@ -3588,7 +3590,7 @@ def map_shapes(
     mesh: Mesh,
     shapes: Shape | Sequence[Shape],
     placements: Placements,
-    field: DirectionField | None = None,
+    field: DirectionField | Sequence[DirectionField] | None = None,
     *,
     limits: tuple[SupportsFloat, SupportsFloat] = (0.5, 2.0),
     threads: SupportsIndex = 0,
@@ -3748,9 +3750,9 @@ def distribute(
     graph: SaddleVertexGraph | Mesh,
     shapes: Shape | Sequence[Shape],
     counts: SupportsIndex | ArrayLike | None = None,
-    field: DirectionField | None = None,
-    density: ArrayLike | None = None,
-    size: SupportsFloat | ArrayLike = 1.0,
+    field: DirectionField | Sequence[DirectionField] | None = None,
+    density: ArrayLike | Sequence[ArrayLike] | None = None,
+    size: SupportsFloat | ArrayLike | Sequence[SupportsFloat | ArrayLike] = 1.0,
     seed: SupportsIndex = 0,
     mode: Literal["random", "packed"] | SupportsFloat = "random",
     maximal: bool = False,
@@ -3759,6 +3761,7 @@ def distribute(
     gap: SupportsFloat = 0.0,
     size_range: ArrayLike = ...,
     forbidden: ArrayLike | None = None,
+    around: Placements | None = None,
     mirror: bool = False,
     bend: bool = False,
     tolerance: SupportsFloat = 0.01,

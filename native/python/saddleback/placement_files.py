@@ -21,7 +21,7 @@ def write_placements(
     mesh: Mesh,
     shapes: Shape | Sequence[Shape],
     placements: Placements,
-    field: DirectionField | None = None,
+    field: DirectionField | Sequence[DirectionField] | None = None,
 ) -> None:
     """Write shapes and their placements as JSON; numbers come back to the bit.
 
@@ -32,7 +32,7 @@ def write_placements(
         mesh: what they lie on; only its size is kept, to tell another mesh.
         shapes: a Shape or several.
         placements: which index them.
-        field: what they bend along, if they do.
+        field: what they bend along, if they do; or a sequence, one a shape.
 
     Raises
     ------
@@ -52,12 +52,10 @@ def write_placements(
         "scale": placements.scale.tolist(),
         "mirrored": placements.mirrored.tolist(),
     }
-    if field is not None:
-        content["field"] = {
-            "symmetry": field.symmetry,
-            "angles": field.angles.tolist(),
-            "turns": field.turns.tolist(),
-        }
+    if isinstance(field, DirectionField):
+        content["field"] = _told(field)
+    elif field is not None:
+        content["field"] = [_told(own) for own in field]
     try:
         _write_file(name, json.dumps(content).encode())
     except InputError as error:
@@ -87,8 +85,14 @@ def read_placements(path: str | os.PathLike[str], mesh: Mesh) -> tuple[list[Shap
     return shapes, content.make(lambda: Placements(index, center, angle, scale, mirrored))
 
 
-def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionField | None:
-    """Read the field that placements bend along, the same to the bit; None if they do not bend.
+def _told(field: DirectionField) -> dict[str, object]:
+    return {"symmetry": field.symmetry, "angles": field.angles.tolist(), "turns": field.turns.tolist()}
+
+
+def read_placement_field(
+    path: str | os.PathLike[str], mesh: Mesh
+) -> DirectionField | tuple[DirectionField, ...] | None:
+    """Read the field that placements bend along, or those of each shape, the same to the bit; None if they do not bend.
 
     Raises
     ------
@@ -99,17 +103,9 @@ def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionF
     field = content.values.get("field")
     if field is None:
         return None
-    if not isinstance(field, dict):
-        raise content.wrong("field", field, "an object")
-    missing = {"symmetry", "angles", "turns"} - set(field)
-    if missing:
-        raise InputError(f"{content.name}: {min(missing)} of the field is missing")
-    content.values |= field
-    count, symmetry = len(mesh.triangles), field["symmetry"]
-    if type(symmetry) is not int:
-        raise content.wrong("symmetry", symmetry, "1, 2 or 4")
-    angles, turns = content.reals("angles", count), content.reals("turns", count, 3)
-    return content.make(lambda: DirectionField.from_turns(mesh, angles, turns, symmetry))
+    if isinstance(field, list):
+        return tuple(content.field(own, mesh) for own in field)
+    return content.field(field, mesh)
 
 
 class _Content:
@@ -149,6 +145,20 @@ class _Content:
             return make()
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
+
+    def field(self, field: object, mesh: Mesh) -> DirectionField:
+        """A field, the same to the bit."""
+        if not isinstance(field, dict):
+            raise self.wrong("field", field, "an object")
+        missing = {"symmetry", "angles", "turns"} - set(field)
+        if missing:
+            raise InputError(f"{self.name}: {min(missing)} of the field is missing")
+        self.values |= field
+        count, symmetry = len(mesh.triangles), field["symmetry"]
+        if type(symmetry) is not int:
+            raise self.wrong("symmetry", symmetry, "1, 2 or 4")
+        angles, turns = self.reals("angles", count), self.reals("turns", count, 3)
+        return self.make(lambda: DirectionField.from_turns(mesh, angles, turns, symmetry))
 
     def rows(self, place: str, value: object, count: int | None = None) -> list[Any]:
         """A list, of that length if one is given."""

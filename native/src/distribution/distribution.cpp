@@ -5,9 +5,11 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <string>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/trace.h"
+#include "saddleback/support/one_or_each.h"
 
 #include "distribution/even_places.h"
 #include "distribution/insertion.h"
@@ -23,7 +25,7 @@ constexpr double k_field_share = 0.3;  ///< of the work, where the field is to b
 
 using namespace distribution;
 
-void check_per_vertex(const char* name, const Mesh& mesh, const std::vector<double>& values, bool may_be_zero) {
+void check_per_vertex(const std::string& name, const Mesh& mesh, const std::vector<double>& values, bool may_be_zero) {
   if (values.size() != static_cast<std::size_t>(mesh.vertex_count()))
     throw InputError(
         message(name, " has ", values.size(), " values, but the mesh has ", mesh.vertex_count(), " vertices"));
@@ -61,21 +63,36 @@ void check_counts(std::span<const Shape> shapes, const DistributionOptions& opti
     if (options.counts[i] < 0) throw InputError(message("counts: ", options.counts[i], " at [", i, "] is negative"));
 }
 
+/// Calls check(name, list, shape) for each list of an option that is given once for all shapes, or once a shape.
+template <class T, class Check>
+void check_each(const char* name, std::span<const Shape> shapes, const std::vector<T>& lists, Check&& check) {
+  if (lists.size() != 1 && lists.size() != shapes.size())
+    throw InputError(message(name, " has ", lists.size(), " lists, but there are ", shapes.size(), " shapes"));
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    check(lists.size() == 1 ? std::string(name) : message(name, " of shape ", i), lists[i]);
+}
+
+double least_scale(const DistributionOptions& options, std::size_t shape) {
+  const std::vector<double>& sizes = one_or_each(options.size, static_cast<Index>(shape));
+  return *std::min_element(sizes.begin(), sizes.end()) * options.smallest;
+}
+
 void check_sizes(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
-  if (options.size.size() == 1) {
-    if (!(options.size[0] > 0) || !std::isfinite(options.size[0]))
-      throw InputError(message("size is ", options.size[0], ", but must be positive and finite"));
-  } else {
-    check_per_vertex("size", mesh, options.size, false);
-  }
+  check_each("size", shapes, options.size, [&](const std::string& name, const std::vector<double>& sizes) {
+    if (sizes.size() != 1)
+      check_per_vertex(name, mesh, sizes, false);
+    else if (!(sizes[0] > 0) || !std::isfinite(sizes[0]))
+      throw InputError(message(name, " is ", sizes[0], ", but must be positive and finite"));
+  });
   if (!(options.smallest > 0) || !(options.largest >= options.smallest) || !std::isfinite(options.largest))
     throw InputError(message("size_range: from ", options.smallest, " to ", options.largest,
                              " is no range above 0; wanted the smallest factor, then the largest"));
-  const double least = *std::min_element(options.size.begin(), options.size.end()) * options.smallest;
-  for (std::size_t i = 0; i < shapes.size(); ++i)
-    if (shapes[i].area() * least * least > mesh.area())
-      throw InputError(message("size: shape ", i, " has an area of ", shapes[i].area() * least * least,
-                               ", larger than the surface, which has ", mesh.area()));
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const double area = shapes[i].area() * least_scale(options, i) * least_scale(options, i);
+    if (area > mesh.area())
+      throw InputError(
+          message("size: shape ", i, " has an area of ", area, ", larger than the surface, which has ", mesh.area()));
+  }
 }
 
 /// Checks that a copy finds room together with half of the gap around it. A region that holds both has at least the
@@ -83,9 +100,9 @@ void check_sizes(const Mesh& mesh, std::span<const Shape> shapes, const Distribu
 void check_gap(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
   if (!(options.gap >= 0) || !std::isfinite(options.gap))
     throw InputError(message("gap is ", options.gap, ", but must be finite and not negative"));
-  const double least = *std::min_element(options.size.begin(), options.size.end()) * options.smallest;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const double radius = least * std::sqrt(shapes[i].area() / std::numbers::pi) + 0.5 * options.gap;
+    const double own = least_scale(options, i) * std::sqrt(shapes[i].area() / std::numbers::pi);
+    const double radius = own + 0.5 * options.gap;
     const double area = std::numbers::pi * radius * radius;
     if (options.gap > 0 && area > mesh.area())
       throw InputError(message("gap is ", options.gap, ": shape ", i, " with half of it around has an area of ", area,
@@ -93,14 +110,32 @@ void check_gap(const Mesh& mesh, std::span<const Shape> shapes, const Distributi
   }
 }
 
-void check_density(const Mesh& mesh, const DistributionOptions& options) {
+void check_density(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
   if (options.density.empty()) return;
-  check_per_vertex("density", mesh, options.density, true);
-  if (std::all_of(options.density.begin(), options.density.end(), [](double v) { return v == 0; }))
-    throw InputError("density is zero everywhere: no place is left for a shape");
+  check_each("density", shapes, options.density, [&](const std::string& name, const std::vector<double>& density) {
+    check_per_vertex(name, mesh, density, true);
+    if (std::all_of(density.begin(), density.end(), [](double v) { return v == 0; }))
+      throw InputError(message(name, " is zero everywhere: no place is left for a shape"));
+  });
   if (options.counts.empty()) throw InputError("density: tells where, but counts must tell how many");
   if (options.maximal)
     throw InputError("density: a surface that is full everywhere cannot follow it; let size follow it instead");
+}
+
+void check_fields(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
+  if (options.bend && options.fields.empty()) throw InputError("bend: wanted a field to bend along");
+  if (options.fields.empty()) return;
+  check_each("field", shapes, options.fields, [&](const std::string& name, const DirectionField* field) {
+    if (&field->mesh() != &mesh) throw InputError(message(name, ": is one of another mesh"));
+  });
+}
+
+void check_around(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
+  try {
+    check_placements(mesh, shapes.size(), options.around);
+  } catch (const InputError& error) {
+    throw InputError(message("around: ", error.what()));
+  }
 }
 
 void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
@@ -109,15 +144,15 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
   check_counts(shapes, options);
   check_sizes(mesh, shapes, options);
   check_gap(mesh, shapes, options);
-  check_density(mesh, options);
-  if (options.field && &options.field->mesh() != &mesh) throw InputError("field: is one of another mesh");
+  check_density(mesh, shapes, options);
+  check_fields(mesh, shapes, options);
+  check_around(mesh, shapes, options);
   if (!options.forbidden.empty() && options.forbidden.size() != static_cast<std::size_t>(mesh.face_count()))
     throw InputError(
         message("forbidden has ", options.forbidden.size(), " values, but the mesh has ", mesh.face_count(), " faces"));
   if (!options.forbidden.empty() &&
       std::all_of(options.forbidden.begin(), options.forbidden.end(), [](std::uint8_t v) { return v != 0; }))
     throw InputError("forbidden: no face is left for a shape");
-  if (options.bend && !options.field) throw InputError("bend: wanted a field to bend along");
   if (options.bend && options.maximal)
     throw InputError("bend: that nothing more fits is proved for copies that do not bend; leave maximal out");
   if (!(options.packing >= 0 && options.packing <= 1))
@@ -164,17 +199,19 @@ class DensityFollower {
  public:
   DensityFollower(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion, const DistributionOptions& options)
       : mesh_(mesh), rules_(rules), insertion_(insertion), options_(options) {
-    for (Index f = 0; f < mesh.face_count(); ++f) mass_ += mesh.face_area(f) * density_at(f, Vec3::Constant(1.0 / 3));
+    masses_.resize(options.density.size(), 0);
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      for (Index f = 0; f < mesh.face_count(); ++f)
+        masses_[i] += mesh.face_area(f) * density_at(options.density[i], f, Vec3::Constant(1.0 / 3));
   }
 
   /// Every copy has a place of its own; one that finds no room there tries farther and farther about it.
   DistributionStop run(const JobStage& stage) {
     constexpr int k_attempts = 24;
-    turns_ = interleaved(options_.counts);
-    places_ = even_places(mesh_, static_cast<Index>(turns_.size()), options_.density, options_.seed);
+    find_places();
     std::vector<Index> missing(turns_.size());
     std::iota(missing.begin(), missing.end(), 0);
-    for (int attempt = 0; attempt < k_attempts && !missing.empty(); ++attempt) {
+    for (int attempt = 0; attempt < k_attempts && insertion_.is_any_wanted(); ++attempt) {
       const double spread = 2.0 * attempt / k_attempts;
       std::vector<Candidate> candidates;
       for (const Index which : missing) candidates.push_back(candidate(which, attempt, spread));
@@ -182,14 +219,41 @@ class DensityFollower {
           candidates, stage.part(static_cast<double>(attempt) / k_attempts, (attempt + 1.0) / k_attempts));
       std::erase_if(missing, [&, i = std::size_t{0}](Index) mutable { return outcomes[i++] == Outcome::laid; });
     }
-    return missing.empty() ? DistributionStop::counts : DistributionStop::tired;
+    return insertion_.is_any_wanted() ? DistributionStop::tired : DistributionStop::counts;
   }
 
  private:
-  double density_at(Index face, const Vec3& weights) const {
+  /// The shape of each copy, and its place: of a density for all shapes in turn; else each by its own.
+  void find_places() {
+    if (options_.density.size() == 1) {
+      turns_ = interleaved(options_.counts);
+      places_ = even_places(mesh_, static_cast<Index>(turns_.size()), options_.density[0], options_.seed);
+      return;
+    }
+    for (std::size_t shape = 0; shape < options_.counts.size(); ++shape) {
+      const std::uint64_t seed = mixed(options_.seed, shape);
+      const SurfacePoints own = even_places(mesh_, options_.counts[shape], options_.density[shape], seed);
+      turns_.insert(turns_.end(), own.size(), static_cast<Index>(shape));
+      places_.insert(places_.end(), own.begin(), own.end());
+    }
+  }
+
+  double density_at(const std::vector<double>& density, Index face, const Vec3& weights) const {
     const Triangle& t = mesh_.triangles()[face];
-    return options_.density[t[0]] * weights[0] + options_.density[t[1]] * weights[1] +
-           options_.density[t[2]] * weights[2];
+    return density[t[0]] * weights[0] + density[t[1]] * weights[1] + density[t[2]] * weights[2];
+  }
+
+  /// The area that a copy has at a place where the densities are met.
+  double room_at(const SurfacePoint& place) const {
+    const auto room = [&](std::size_t i, double count) {
+      const double density = density_at(options_.density[i], place.face, place.barycentric);
+      return masses_[i] / count / std::max(density, 1e-9 * masses_[i]);
+    };
+    if (masses_.size() == 1) return room(0, static_cast<double>(turns_.size()));
+    double copies = 0;
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (options_.counts[i] > 0) copies += 1 / room(i, options_.counts[i]);
+    return 1 / copies;
   }
 
   /// `spread` in units of the distance between copies where the density is met.
@@ -197,28 +261,40 @@ class DensityFollower {
     const std::uint64_t key = mixed(mixed(options_.seed, static_cast<std::uint64_t>(attempt)), which);
     SurfacePoint place = places_[which];
     if (attempt > 0) {
-      const double density = density_at(place.face, place.barycentric);
-      const double apart = std::sqrt(mass_ / static_cast<double>(turns_.size()) / std::max(density, 1e-9 * mass_));
+      const double apart = std::sqrt(room_at(place));
       const double length = spread * std::min(apart, std::sqrt(mesh_.area())) * std::sqrt(uniform(key, 3));
       const SurfacePoint moved = trace_end(mesh_, place, 2 * std::numbers::pi * uniform(key, 4), length).point;
-      if (density_at(moved.face, moved.barycentric) > 0) place = moved;
+      const auto& density = one_or_each(options_.density, turns_[which]);
+      if (density_at(density, moved.face, moved.barycentric) > 0) place = moved;
     }
     std::vector<Index> kinds;
     for (Index k = 0; k < static_cast<Index>(rules_.kinds().size()); ++k)
       if (rules_.kinds()[k].shape == turns_[which]) kinds.push_back(k);
     const Index kind = kinds[static_cast<std::size_t>(uniform(key, 0) * static_cast<double>(kinds.size()))];
     const double factor = options_.smallest + (options_.largest - options_.smallest) * uniform(key, 1);
-    return {uniform(key, 2), kind, which, place, rules_.size_at(place) * factor};
+    return {uniform(key, 2), kind, which, place, rules_.size_at(turns_[which], place) * factor};
   }
 
   const Mesh& mesh_;
   const PlacingRules& rules_;
   Insertion& insertion_;
   const DistributionOptions& options_;
-  double mass_ = 0;           ///< the density's integral
-  std::vector<Index> turns_;  ///< the shape of each copy
+  std::vector<double> masses_;  ///< integrals of the densities
+  std::vector<Index> turns_;    ///< the shape of each copy
   SurfacePoints places_;
 };
+
+/// Lays what lies there already. That no copies meet is asked without the gap, which they need not keep.
+void lay_around(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
+                Insertion& insertion, const JobStage& stage) {
+  if (options.gap > 0) {
+    DistributionOptions bare = options;
+    bare.gap = 0;
+    const PlacingRules rules(mesh, shapes, bare, stage);
+    Insertion(mesh, rules, bare).keep(options.around, false, stage.part(0, 0.5));
+  }
+  insertion.keep(options.around, options.gap > 0, stage.part(0.5, 1));
+}
 
 }  // namespace
 
@@ -227,24 +303,29 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   check(mesh, shapes, given);
   DistributionOptions options = given;
   share_out(options);
-  const OnlyRatios density(given.density);
-  options.density.assign(density.values().begin(), density.values().end());
+  for (std::vector<double>& density : options.density) {
+    const OnlyRatios ratios(density);
+    density = std::vector<double>(ratios.values().begin(), ratios.values().end());
+  }
   const JobStage stage(job, "Shapes");
   std::optional<DirectionField> smoothest;
-  if (!options.field) {
+  const bool has_field = !options.fields.empty();
+  if (!has_field) {
     const DirectionFieldOptions even;
     smoothest = direction_field(mesh, 2, even, stage.part(0, k_field_share));
+    options.fields = {&*smoothest};
   }
-  const JobStage laid = options.field ? stage : stage.part(k_field_share, 1);
-  const DirectionField& field = options.field ? *options.field : *smoothest;
-  const PlacingRules rules(mesh, shapes, options, field, laid.part(0, 0.05));
+  const JobStage laid = has_field ? stage : stage.part(k_field_share, 1);
+  const PlacingRules rules(mesh, shapes, options, laid.part(0, 0.05));
   Insertion insertion(mesh, rules, options);
+  if (!options.around.empty()) lay_around(mesh, shapes, options, insertion, laid.part(0.05, 0.1));
   DistributionResult result;
   if (!options.density.empty()) {
-    result.stop = DensityFollower(mesh, rules, insertion, options).run(laid.part(0.05, 1));
+    result.stop =
+        DensityFollower(mesh, rules, insertion, options).run(laid.part(options.around.empty() ? 0.05 : 0.1, 1));
   } else {
     MaximalSampling search(mesh, rules, insertion, options);
-    result.stop = search.run(laid.part(0.05, 1));
+    result.stop = search.run(laid.part(options.around.empty() ? 0.05 : 0.1, 1));
     if (options.maximal) result.certificate = search.certificate();
   }
   for (const Copy& copy : insertion.settled().copies()) result.placements.push_back(copy.placement);

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include "saddleback/error.h"
+
 #include "support/threads/parallel.h"
 
 namespace saddleback::distribution {
@@ -29,6 +31,19 @@ Outcome outcome_of(MapFailure failure) {
       return Outcome::stretched;
     default:
       return Outcome::laid;
+  }
+}
+
+const char* reason_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::collision:
+      return " meets one before it; leave one of them out";
+    case Outcome::boundary:
+      return " reaches beyond the boundary of the surface; leave it out";
+    case Outcome::forbidden:
+      return " lies on a forbidden face; leave it out";
+    default:
+      return " cannot be laid where it is, as the surface bends too much; leave it out";
   }
 }
 
@@ -98,18 +113,24 @@ bool Insertion::is_foreseen_to_meet(const Copy& copy) const {
 }
 
 void Insertion::attempt(const Candidate& candidate, Attempt& attempt, int thread) const {
-  attempt.copy = rules_->copy(candidate.kind, candidate.center, rules_->field_angle(candidate.center), candidate.scale);
-  if (!is_wanted(attempt.copy.placement.shape)) {
+  const auto& [key, kind, cell, center, scale, is_thorough, is_probe, lying] = candidate;
+  attempt.is_lying = lying != nullptr;
+  attempt.copy = lying ? rules_->copy(*lying) : rules_->copy(kind, center, rules_->field_angle(kind, center), scale);
+  if (!lying && !is_wanted(attempt.copy.placement.shape)) {
     attempt.outcome = Outcome::not_wanted;
     return;
   }
-  if (!candidate.is_thorough && !candidate.is_probe && is_foreseen_to_meet(attempt.copy)) {
+  if (!is_thorough && !is_probe && is_foreseen_to_meet(attempt.copy)) {
     attempt.outcome = Outcome::collision;
     return;
   }
   auto& mapper = mappers_[thread];
   if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
   test(attempt, *mapper);
+  if (lying && are_apart_ && attempt.outcome != Outcome::laid) {  // too near to the rim for the gap around it
+    attempt.copy = rules_->bare_copy(*lying);
+    test(attempt, *mapper);
+  }
 }
 
 void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
@@ -122,9 +143,10 @@ void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
   attempt.outcome = outcome_of(failure);
   if (attempt.outcome != Outcome::laid) return;
   const auto is_forbidden = [&](Index face) { return !forbidden_.empty() && forbidden_[face]; };
-  if (std::any_of(attempt.outline.faces.begin(), attempt.outline.faces.end(), is_forbidden))
+  const bool is_asked = !attempt.is_lying || !are_apart_;
+  if (is_asked && std::any_of(attempt.outline.faces.begin(), attempt.outline.faces.end(), is_forbidden))
     attempt.outcome = Outcome::forbidden;
-  else if (!settled_.is_free(attempt.copy, attempt.outline, mapper))
+  else if (is_asked && !settled_.is_free(attempt.copy, attempt.outline, mapper))
     attempt.outcome = Outcome::collision;
   if (attempt.outcome != Outcome::laid) return;
   const ShapeMap& plane = mapper.plane();
@@ -140,7 +162,7 @@ void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
 }
 
 void Insertion::commit(Attempt& attempt) {
-  if (attempt.outcome == Outcome::laid && !is_wanted(attempt.copy.placement.shape))
+  if (attempt.outcome == Outcome::laid && !attempt.is_lying && !is_wanted(attempt.copy.placement.shape))
     attempt.outcome = Outcome::not_wanted;
   if (attempt.outcome == Outcome::laid) {
     const auto& faces = attempt.outline.faces;
@@ -161,6 +183,25 @@ void Insertion::commit(Attempt& attempt) {
   } else if (attempt.outcome != Outcome::not_wanted) {
     ++rejections_[static_cast<std::size_t>(attempt.outcome) - static_cast<std::size_t>(Outcome::collision)];
   }
+}
+
+void Insertion::keep(std::span<const Placement> lying, bool are_apart, const JobStage& stage) {
+  are_apart_ = are_apart;
+  std::vector<Candidate> candidates;
+  candidates.reserve(lying.size());
+  for (const Placement& copy : lying)
+    candidates.push_back({.key = static_cast<double>(candidates.size()),
+                          .kind = k_none,
+                          .cell = k_none,
+                          .center = copy.center,
+                          .scale = copy.scale,
+                          .is_thorough = true,
+                          .lying = &copy});
+  const std::vector<Outcome> outcomes = insert(std::move(candidates), stage);
+  const auto is_laid = [](Outcome outcome) { return outcome == Outcome::laid; };
+  const auto refused = std::find_if_not(outcomes.begin(), outcomes.end(), is_laid);
+  if (refused != outcomes.end())
+    throw InputError(message("around: copy ", refused - outcomes.begin(), reason_of(*refused)));
 }
 
 void Insertion::make_pending_known() {
@@ -189,7 +230,8 @@ std::vector<Outcome> Insertion::insert(std::vector<Candidate> candidates, const 
     return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
   };
   std::size_t size = k_first_batch, sorted = 0;
-  for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted() && !is_hopeless(); begin = end) {
+  const auto goes_on = [&] { return candidates[0].lying || (is_any_wanted() && !is_hopeless()); };
+  for (std::size_t begin = 0, end; begin < order.size() && goes_on(); begin = end) {
     stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
     end = std::min(order.size(), begin + size);
     if (end > sorted) {  // a part at a time: sorting millions could not be stopped

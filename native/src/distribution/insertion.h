@@ -21,6 +21,8 @@ struct Candidate {
   bool is_thorough = false;
   /// Says that the candidate is as thorough, to learn whether shapes can be laid there at all.
   bool is_probe = false;
+  /// A copy that lies there already, as it lies: it is wanted whatever the counts say. Null: a new one.
+  const Placement* lying = nullptr;
 };
 
 enum class Outcome : std::uint8_t { laid, not_wanted, collision, boundary, forbidden, fold, stretched };
@@ -48,12 +50,17 @@ class Insertion {
   std::vector<Outcome> insert(std::vector<Candidate> candidates, const JobStage& stage,
                               std::span<const std::uint64_t> face_order = {});
 
+  /// Lays copies that lie there already. \throw InputError naming the first that cannot be, or that meets one before
+  /// it, unless `are_apart` tells that none does, whatever their gap.
+  void keep(std::span<const Placement> lying, bool are_apart, const JobStage& stage);
+
   /// Tells whether a copy meets one that lies there, as far as can be foreseen.
   bool is_foreseen_to_meet(const Copy& copy) const;
 
  private:
   struct Attempt {
     Copy copy;
+    bool is_lying = false;
     Outcome outcome = Outcome::laid;
     SurfaceOutline outline;
     // If it has room:
@@ -85,6 +92,7 @@ class Insertion {
   std::vector<Index> wanted_, inserted_;
   std::vector<double> shares_;  ///< sum 1; empty: any
   Index inserted_in_all_ = 0;
+  bool are_apart_ = false;  ///< those that lie there already
   std::array<std::int64_t, k_rejection_count> rejections_{};
   double most_in_vain_;                                          ///< candidates on a bare surface
   mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread

@@ -67,10 +67,8 @@ MaximalSampling::MaximalSampling(const Mesh& mesh, const PlacingRules& rules, In
                                  const DistributionOptions& options)
     : mesh_(&mesh), rules_(&rules), insertion_(&insertion), options_(&options) {
   if (options.packing > 0) front_ = sweep_coordinate(mesh);
-  if (options.maximal) {
-    const double size = options.smallest * *std::max_element(options.size.begin(), options.size.end());
-    certificate_.tolerance = options.tolerance * (size * rules.largest_shape_radius() + 0.5 * options.gap);
-  }
+  if (options.maximal)
+    certificate_.tolerance = options.tolerance * (rules.radius_of_smallest_copies() + 0.5 * options.gap);
   suspected_.resize(options.maximal ? static_cast<std::size_t>(mesh.face_count()) : 0);
   flag_borders();
 }
@@ -142,7 +140,7 @@ double MaximalSampling::order(const SurfacePoint& point, std::uint64_t key) cons
 void MaximalSampling::weigh_kinds() {
   kind_weights_.clear();
   for (const Kind& kind : rules_->kinds())
-    kind_weights_.push_back(insertion_->share(kind.shape) * rules_->shape_radius(kind) * rules_->shape_radius(kind));
+    kind_weights_.push_back(insertion_->share(kind.shape) * rules_->weight_of(kind));
 }
 
 Index MaximalSampling::draw_kind(std::uint64_t kinds, double chance) const {
@@ -161,8 +159,7 @@ Index MaximalSampling::draw_kind(std::uint64_t kinds, double chance) const {
 }
 
 double MaximalSampling::mean_drops(Index face, double per_area) const {
-  const double size = rules_->size_at(face, Vec2::Constant(1.0 / 3));
-  return std::min(per_area * mesh_->face_area(face) / (size * size), k_most_drops);
+  return std::min(per_area * mesh_->face_area(face) / rules_->mean_square_size(face), k_most_drops);
 }
 
 /// Calls visit(key of the drop, its number among random ones, point) for each.
@@ -210,7 +207,7 @@ void MaximalSampling::try_batch(int number, double per_area, const JobStage& sta
     for_each([&](double order, std::uint64_t key, const SurfacePoint& point) {
       if (bin_of(order) < begin || bin_of(order) >= end) return;
       const Index kind = draw_kind(~std::uint64_t{0}, uniform(key, 0));
-      candidates.push_back({order, kind, point.face, point, drawn_scale(point, uniform(key, 4))});
+      candidates.push_back({order, kind, point.face, point, drawn_scale(kind, point, uniform(key, 4))});
     });
     const auto share = [&](std::size_t drop) { return static_cast<double>(drop) / count; };
     insertion_->insert(candidates, stage.part(share(done), share(done + held)));
@@ -223,9 +220,7 @@ void MaximalSampling::try_batch(int number, double per_area, const JobStage& sta
 DistributionStop MaximalSampling::sample_at_random(const JobStage& stage) {
   std::span<const double> batches = options_->packing > 0 ? std::span<const double>(k_sweeping_batches) : k_batches;
   if (searches()) batches = batches.first(options_->packing > 0 ? k_searching_sweeps : k_searching_batches);
-  double area = 0;
-  for (const Kind& kind : rules_->kinds()) area += rules_->shape_area(kind);
-  area *= rules_->mean_square_factor() / static_cast<double>(rules_->kinds().size());
+  const double area = rules_->mean_area();
   bool is_tired = false;
   for (std::size_t i = 0; i < batches.size() && insertion_->is_any_wanted(); ++i) {
     const auto part = [&](double share) {
@@ -244,10 +239,11 @@ DistributionStop MaximalSampling::sample_at_random(const JobStage& stage) {
 }
 
 /// Throws darts into every cell whose center seems free, unless that is for numbers alone; in others by their area.
-void MaximalSampling::throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const {
+void MaximalSampling::throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const {
   const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
   const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
   if (kind == k_none) return;
+  rules_->see(open.cell, rules_->kinds()[kind].shape, view);
   double along = uniform(key, 1), up = uniform(key, 2);
   if (along + up > 1) along = 1 - along, up = 1 - up;
   const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
@@ -269,7 +265,7 @@ void MaximalSampling::throw_dart(const OpenCell& open, const CellView& view, Ind
   }
   const SurfacePoint point = point_at(open.cell.face, open.cell.weights(along, up));
   look.has_dart = true;
-  look.dart = {order(point, key), kind, number, point, drawn_scale(point, uniform(key, 4))};
+  look.dart = {order(point, key), kind, number, point, drawn_scale(kind, point, uniform(key, 4))};
 }
 
 bool MaximalSampling::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const {
@@ -338,10 +334,10 @@ bool MaximalSampling::is_certain(const CellView& view, const Copy& copy, const M
 }
 
 /// Finds the copies that the smallest ones may meet, the nearest first.
-void MaximalSampling::find_neighbors(const CellView& view, Neighbors& near) const {
+void MaximalSampling::find_neighbors(const Cell& cell, const CellView& view, Neighbors& near) const {
   near.clear();
   const SurfacePoint& center = view.center;
-  const double reach = rules_->smallest_factor() * view.size * rules_->largest_body_radius();
+  const double reach = rules_->reach_at(cell.face, cell.center());
   insertion_->settled().visit(center.face, {center.barycentric[1], center.barycentric[2]}, reach,
                               [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
                                 const Copy& there = insertion_->settled().copies()[other];
@@ -354,18 +350,25 @@ void MaximalSampling::find_neighbors(const CellView& view, Neighbors& near) cons
 }
 
 /// Kinds of which the disk about the center meets a copy wherever in the cell it is. It does not matter how they turn.
-std::uint64_t MaximalSampling::centrally_covered(const CellView& view, std::uint64_t kinds,
+std::uint64_t MaximalSampling::centrally_covered(const Cell& cell, const CellView& view, std::uint64_t kinds,
                                                  const Neighbors& near) const {
-  const double scale = rules_->smallest_factor() * view.size;
+  std::array<double, k_most_kinds> inradii;
+  double largest = 0;
+  for (std::uint64_t rest = kinds; rest; rest &= rest - 1) {
+    const auto kind = static_cast<Index>(std::countr_zero(rest));
+    const double size = rules_->size_at(rules_->kinds()[kind].shape, cell.face, cell.center());
+    inradii[kind] = rules_->smallest_factor() * size * rules_->inradius(kind);
+    largest = std::max(largest, inradii[kind]);
+  }
   std::uint64_t covered = 0;
   for (const Neighbor& neighbor : near) {
-    if (neighbor.away > scale * rules_->largest_inradius()) break;
+    if (neighbor.away > largest) break;
     const Copy& there = insertion_->settled().copies()[neighbor.copy];
     const Vec2 place = (neighbor.origin + neighbor.turn * view.place) / there.placement.scale;
     const double distance = there.placement.scale * there.body->distance.upper(place);
     for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
       const auto kind = static_cast<Index>(std::countr_zero(rest));
-      if (scale * rules_->inradius(kind) - view.radius > distance) covered |= std::uint64_t{1} << kind;
+      if (inradii[kind] - view.radius > distance) covered |= std::uint64_t{1} << kind;
     }
     if (covered == kinds) break;
   }
@@ -396,15 +399,14 @@ bool MaximalSampling::is_covered(const CellView& view, const Copy& copy, const M
 void MaximalSampling::look(const OpenCell& open, Index number, Neighbors& near, Look& look) const {
   CellView view = rules_->view(open.cell);
   look.tests = std::popcount(open.kinds);
-  find_neighbors(view, near);
-  const std::uint64_t kinds = open.kinds & ~centrally_covered(view, open.kinds, near);
-  if (!kinds) return;
-  rules_->turn(open.cell, view);
-  const Motion motion = rules_->motion(view, rules_->smallest_factor());
+  find_neighbors(open.cell, view, near);
+  const std::uint64_t kinds = open.kinds & ~centrally_covered(open.cell, view, open.kinds, near);
   for (std::uint64_t rest = kinds; rest; rest &= rest - 1) {
     const auto kind = static_cast<Index>(std::countr_zero(rest));
     const Kind& what = rules_->kinds()[kind];
     if (!insertion_->is_wanted(what.shape)) continue;
+    rules_->see(open.cell, what.shape, view);
+    const Motion motion = rules_->motion(view, rules_->smallest_factor());
     const Copy copy = rules_->copy(kind, view.center, view.angle, rules_->smallest_factor() * view.size);
     if (is_covered(view, copy, motion, near)) continue;
     const double least = tolerance(view, what);
@@ -473,10 +475,12 @@ void MaximalSampling::round(const JobStage& stage) {
     if (found.has_dart) candidates.push_back(found.dart);
     for (std::uint64_t rest = found.asked; rest; rest &= rest - 1) {
       const auto kind = static_cast<Index>(std::countr_zero(rest));
-      const CellView view = rules_->view(open_[i].cell);
-      const std::uint64_t key = mixed(options_->seed, open_[i].cell.key());
-      const double scale = rules_->smallest_factor() * view.size;
-      candidates.push_back({order(view.center, key), kind, i, view.center, scale, true});
+      const Cell& cell = open_[i].cell;
+      const SurfacePoint center = point_at(cell.face, cell.center());
+      const std::uint64_t key = mixed(options_->seed, cell.key());
+      const double scale =
+          rules_->smallest_factor() * rules_->size_at(rules_->kinds()[kind].shape, cell.face, cell.center());
+      candidates.push_back({order(center, key), kind, i, center, scale, true});
     }
   }
   const std::vector<Outcome> outcomes = insertion_->insert(candidates, stage.part(0.5, 1), face_order_);

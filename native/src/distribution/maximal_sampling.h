@@ -65,14 +65,16 @@ class MaximalSampling {
   void search_cells(const JobStage& stage);
   void round(const JobStage& stage);
   void look(const OpenCell& open, Index number, Neighbors& near, Look& look) const;
-  void find_neighbors(const CellView& view, Neighbors& near) const;
+  void find_neighbors(const Cell& cell, const CellView& view, Neighbors& near) const;
   Index draw_kind(std::uint64_t kinds, double chance) const;
-  double drawn_scale(const SurfacePoint& point, double chance) const {
-    return rules_->size_at(point) * (options_->smallest + (options_->largest - options_->smallest) * chance);
+  double drawn_scale(Index kind, const SurfacePoint& point, double chance) const {
+    const double size = rules_->size_at(rules_->kinds()[kind].shape, point);
+    return size * (options_->smallest + (options_->largest - options_->smallest) * chance);
   }
   void suspect(Index face);
-  void throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const;
-  std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbors& near) const;
+  void throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const;
+  std::uint64_t centrally_covered(const Cell& cell, const CellView& view, std::uint64_t kinds,
+                                  const Neighbors& near) const;
   bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbors& near) const;
   bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found, const Pose& pose,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saddleback/distribution/distribution.h"
+#include "saddleback/support/one_or_each.h"
 
 #include "distribution/cell.h"
 #include "distribution/collision_shape.h"
@@ -24,20 +25,23 @@ struct Kind {
   bool is_mirrored;
 };
 
-/// A cell, and how much direction and size change over it.
+inline constexpr std::size_t k_most_kinds = 64;  ///< a bit of a word each, see maximal_sampling
+
+/// A cell, and how much direction and size of a shape change over it.
 struct CellView {
   SurfacePoint center;
-  Vec2 place;           ///< the center in the face's plane
-  double radius;        ///< farthest corner from the center
-  double angle;         ///< of the field at the center
-  double angle_spread;  ///< by how much it differs elsewhere in the cell
-  double size, size_spread;
+  Vec2 place;               ///< the center in the face's plane
+  double radius;            ///< farthest corner from the center
+  Index shape = k_none;     ///< whose angle and size these are
+  double angle = 0;         ///< of the field at the center
+  double angle_spread = 0;  ///< by how much it differs elsewhere in the cell
+  double size = 0, size_spread = 0;
 };
 
 class PlacingRules {
  public:
   PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
-               const DirectionField& field, const JobStage& stage);
+               const JobStage& stage);
 
   std::span<const Kind> kinds() const { return kinds_; }
   const FlatFaces& flat() const { return flat_; }
@@ -45,12 +49,11 @@ class PlacingRules {
   double largest_radius() const { return largest_radius_; }
   double smallest_radius() const { return smallest_radius_; }
   double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
-  double shape_area(const Kind& kind) const { return areas_[kind.shape]; }
+  /// Of kinds of different sizes larger ones are tried more often, in proportion to their areas.
+  double weight_of(const Kind& kind) const;
   double inradius(Index kind) const { return inradii_[kinds_[kind].shape]; }
-  double largest_inradius() const { return *std::max_element(inradii_.begin(), inradii_.end()); }
-  /// Returns the radius of bodies, the gap included, in units of their planes.
-  double largest_body_radius() const { return largest_body_radius_; }
-  double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
+  /// Returns the circumradius of the smallest copies where shapes are largest, without the gap.
+  double radius_of_smallest_copies() const;
   double smallest_body_area() const { return smallest_body_area_; }  ///< the gap included, mesh units
   double smallest_factor() const { return smallest_factor_; }
   /// The mean of the squares of the factors that copies are scaled by.
@@ -60,17 +63,32 @@ class PlacingRules {
            3;
   }
 
-  /// Finds all but the angle and its spread, which `turn` adds: most cells are decided without them.
-  CellView view(const Cell& cell) const;
-  void turn(const Cell& cell, CellView& view) const;
-  double size_at(Index face, const Vec2& weights) const;
-  double size_at(const SurfacePoint& point) const {
-    return size_at(point.face, {point.barycentric[1], point.barycentric[2]});
-  }
+  /// Returns the mean of the squares of the shapes' sizes at the middle of a face, and of their areas in their planes.
+  double mean_square_size(Index face) const;
+  double mean_area() const;
 
-  /// A copy of the kind at a point where the field has this angle.
+  /// Finds all but what depends on the shape, which `see` adds: most cells are decided without.
+  CellView view(const Cell& cell) const;
+  void see(const Cell& cell, Index shape, CellView& view) const;
+  double size_at(Index shape, Index face, const Vec2& weights) const;
+  double size_at(Index shape, const SurfacePoint& point) const {
+    return size_at(shape, point.face, {point.barycentric[1], point.barycentric[2]});
+  }
+  /// Returns how far the smallest copies at a place reach, the gap included.
+  double reach_at(Index face, const Vec2& weights) const;
+
+  /// A copy of the kind at a point where its field has this angle.
   Copy copy(Index kind, const SurfacePoint& center, double field_angle, double scale) const;
-  double field_angle(const SurfacePoint& point) const { return field_->angle_at(point); }
+  Copy copy(const Placement& placement) const {
+    return {placement, &body(placement.shape, placement.mirrored, placement.scale), 0};
+  }
+  /// The same without the gap, of one that lies there already.
+  Copy bare_copy(const Placement& placement) const {
+    return {placement, bare_[2 * static_cast<std::size_t>(placement.shape) + (placement.mirrored ? 1 : 0)].get(), 0};
+  }
+  double field_angle(Index kind, const SurfacePoint& point) const {
+    return one_or_each(fields_, kinds_[kind].shape)->angle_at(point);
+  }
   /// Returns what a copy bends along; none where it does not.
   std::optional<CenterLine> line(const Placement& placement) const;
   /// Returns by how much the points of a copy move when its center does within the cell.
@@ -79,21 +97,23 @@ class PlacingRules {
   }
 
  private:
-  const CollisionShape& body(Index kind, double scale) const;
+  void turn(const Cell& cell, const DirectionField& field, CellView& view) const;
+  const CollisionShape& body(Index shape, bool is_mirrored, double scale) const;
   void make_bodies(std::span<const Shape> shapes, const DistributionOptions& options, const JobStage& stage);
 
   const Mesh* mesh_;
   FlatFaces flat_;
-  const DirectionField* field_;
+  std::vector<const DirectionField*> fields_;  ///< one, or one a shape
   std::span<const Shape> shapes_;
   bool bends_;
-  std::vector<double> size_;
+  std::vector<std::vector<double>> size_;  ///< one, or one a shape
   double smallest_factor_, largest_factor_;
   std::vector<double> radii_, inradii_, areas_;  ///< per shape
   std::vector<Kind> kinds_;
   std::vector<std::vector<std::unique_ptr<CollisionShape>>>
-      bodies_;  ///< per shape and side, by size where there is a gap
-  double least_scale_ = 1;
+      bodies_;                                         ///< per shape and side, by size where there is a gap
+  std::vector<std::unique_ptr<CollisionShape>> bare_;  ///< without the gap, where some lie there already
+  std::vector<double> least_scales_;                   ///< per shape
   double largest_radius_ = 0, smallest_radius_ = 0, largest_body_radius_ = 0, smallest_body_area_ = 0;
 };
 

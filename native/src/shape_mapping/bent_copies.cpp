@@ -84,7 +84,8 @@ BentCopies bent_copies(const Mesh& mesh, std::span<const Shape> shapes, std::spa
     const double radius = shape.circumradius() * placement.scale;
     OutlineMapper& mapper = team.of(thread);
     SurfaceOutline outline;
-    bent[i].failure = map_shape(mapper, shape, placement, options.mapping.field, outline, options.mapping.limits);
+    bent[i].failure =
+        map_shape(mapper, shape, placement, options.mapping.field(placement.shape), outline, options.mapping.limits);
     if (bent[i].failure == MapFailure::none) {
       SurfaceFit fit(mesh, normals);
       fit.bend(mapper, placement, solids[placement.shape], edges[placement.shape], options.tolerance * radius);

@@ -10,7 +10,10 @@ namespace saddleback {
 void check_mapping(const Mesh& mesh, std::span<const Shape> shapes, std::span<const Placement> placements,
                    const MapShapesOptions& options) {
   check_placements(mesh, shapes.size(), placements);
-  if (options.field && &options.field->mesh() != &mesh) throw InputError("field belongs to another mesh");
+  if (options.fields.size() > 1 && options.fields.size() != shapes.size())
+    throw InputError(message("field: ", options.fields.size(), " fields, but there are ", shapes.size(), " shapes"));
+  for (const DirectionField* field : options.fields)
+    if (&field->mesh() != &mesh) throw InputError("field belongs to another mesh");
   const MapLimits& limits = options.limits;
   if (!(limits.smallest > 0 && limits.smallest <= 1 && limits.largest >= 1))
     throw InputError(message("limits are ", limits.smallest, " and ", limits.largest,
@@ -28,8 +31,8 @@ std::vector<MappedShape> map_shapes(const Mesh& mesh, std::span<const Shape> sha
   parallel_for(count, team.threads(), 4, [&](Index i, int thread) {
     MappedShape& mapped = result[i];
     const Placement& placement = placements[i];
-    mapped.failure =
-        map_shape(team.of(thread), shapes[placement.shape], placement, options.field, mapped.outline, options.limits);
+    mapped.failure = map_shape(team.of(thread), shapes[placement.shape], placement, options.field(placement.shape),
+                               mapped.outline, options.limits);
     if (mapped.failure != MapFailure::none) mapped.outline = {};
     stage.update(static_cast<double>(++done) / count);
   });

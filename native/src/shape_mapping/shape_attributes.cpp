@@ -73,8 +73,9 @@ ShapeAttributes shape_attributes(const Mesh& mesh, std::span<const Shape> shapes
     SurfaceOutline outline;
     const Shape& shape = shapes[placements[i].shape];
     OutlineMapper& mapper = team.of(thread);
-    if (map_shape(mapper, shape, placements[i], options.field, outline, options.limits) == MapFailure::none)
-      near[i] = near_vertices(mapper, shape, placements[i], outline, options.field, reach);
+    const DirectionField* const field = options.field(placements[i].shape);
+    if (map_shape(mapper, shape, placements[i], field, outline, options.limits) == MapFailure::none)
+      near[i] = near_vertices(mapper, shape, placements[i], outline, field, reach);
     stage.update(static_cast<double>(++done) / count);
   });
   ShapeAttributes result;

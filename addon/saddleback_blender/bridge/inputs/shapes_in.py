@@ -42,7 +42,7 @@ def read_templates(
         return tuple(preset(settings.shapes))
     if settings.shapes == "IMAGE":
         return (_of_image(source, _image(source, settings.shapes_image)),)
-    items = _items(source, settings.shapes_collection)
+    items = items_of(source, settings.shapes_collection)
     found = [(_template(context, source, item), item) for item in items]
     with evaluated(context, items) as shown:
         scales = [(x, y, z) for x, y, z in (item.matrix_world.to_scale() for item in shown)]
@@ -59,7 +59,8 @@ def read_templates(
     )
 
 
-def _items(source: bpy.types.Object, name: str) -> list[bpy.types.Object]:
+def items_of(source: bpy.types.Object, name: str) -> list[bpy.types.Object]:
+    """The objects of a collection that are laid on the surface, by name. Raises BadInputError where there is none."""
     group = find(bpy.data.collections, name)
     if group is None:
         missing = f"there is no collection '{name}'" if name else "no collection is chosen"

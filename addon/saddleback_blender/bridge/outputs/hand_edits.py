@@ -35,6 +35,13 @@ def is_edited(item: bpy.types.Object) -> bool:
     return CONTENT in item and item[CONTENT] != _content(item)
 
 
+def accept(item: bpy.types.Object) -> None:
+    """Takes what was edited as ours: a run has read it, and goes on from it."""
+    if is_edited(item):
+        rollback.remember_keys(item, CONTENT)
+        item[CONTENT] = _content(item)
+
+
 def keep_data(item: bpy.types.Object) -> None:
     """Makes an ordinary object, hidden, of an output that is about to get other data, if it was edited."""
     if not is_edited(item):

@@ -21,14 +21,19 @@ struct DistributionOptions {
   /// of its share by more than a hundredth and one copy, so where one finds no more room the others stop as well. With
   /// a density the shares are those of the counts.
   std::vector<double> shares;
-  /// Says where shapes point: x axes along one of the field's directions, chosen at random among those that differ.
-  const DirectionField* field = nullptr;
-  /// Scale of the shapes (mesh units for one unit of their planes): one value, or one a vertex.
-  std::vector<double> size{1.0};
+  /// Says where shapes point: x axes along one of the field's directions, chosen at random among those that differ. One
+  /// field for all shapes, or one a shape; empty: the smoothest field of lines.
+  std::vector<const DirectionField*> fields;
+  /// Scale of the shapes (mesh units for one unit of their planes): one value, or one a vertex; a list for all shapes,
+  /// or one a shape.
+  std::vector<std::vector<double>> size{{1.0}};
   /// Every copy is scaled by another factor in this range, chosen at random.
   double smallest = 1, largest = 1;
-  /// Density wanted at each vertex, in copies per area, of which only ratios matter; empty: even. Needs counts.
-  std::vector<double> density;
+  /// Density wanted at each vertex, in copies per area, of which only ratios matter; a list for all shapes, or one a
+  /// shape; empty: even. Needs counts.
+  std::vector<std::vector<double>> density;
+  /// Copies that lie on the surface already. They come first in the result, and count as copies of their shapes.
+  Placements around;
   /// Flags of the faces that nothing may touch. Empty: none.
   std::vector<std::uint8_t> forbidden;
   /// Least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
@@ -91,11 +96,12 @@ struct DistributionResult {
 /// room stays, as if one after the other: the same result for any number of threads [blelloch2012]. Where the surface
 /// is covered is found by subdivision (after [ebeida2011], for outlines instead of disks). Distances are within the
 /// surface: sheets that lie close to each other know nothing of each other. \throw InputError naming the argument: no
-/// shape; counts of another number than shapes or negative; a field of another mesh; sizes, density or forbidden of the
-/// wrong length, not finite, not positive (density: negative or zero everywhere); a range of sizes that is none; a copy
-/// larger than the surface, alone or with half of the gap around; a negative gap; packing outside 0 to 1; a tolerance
-/// outside 0.001 to 0.5; shares of another number than shapes, negative, all zero, or with maximal; bend without a
-/// field or with maximal; a density without counts, or with maximal; everything forbidden. Cancelled.
+/// shape; fields, sizes or densities of another number than shapes; counts of another number than shapes or negative; a
+/// field of another mesh; sizes, density or forbidden of the wrong length, not finite, not positive (density: negative
+/// or zero everywhere); a range of sizes that is none; a copy larger than the surface, alone or with half of the gap
+/// around; a negative gap; packing outside 0 to 1; a tolerance outside 0.001 to 0.5; copies to lay around that meet
+/// each other, or do not fit where they are; shares of another number than shapes, negative, all zero, or with maximal;
+/// bend without a field or with maximal; a density without counts, or with maximal; everything forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 
