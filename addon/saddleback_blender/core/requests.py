@@ -295,7 +295,8 @@ class KeptShapes:
 
     shape: Indices
     points: Reals  # (n, 3) centers
-    ahead: Reals  # (n, 3) their x axes
+    ahead: Reals  # (n, 3) their x axes, at right angles to
+    up: Reals  # (n, 3) the surface's smooth normals
     scales: Reals
     mirrored: NDArray[np.bool_]
 

@@ -46,6 +46,7 @@ from ..core.progress import Progress
 from ..core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from ..core.results import CheckResult, DistributeResult
 from ..core.settings import DirectionFieldSettings, DistributeSettings
+from ..core.shapes.shape_templates import sized
 from ..props import keep_settings, kept_settings, settings_of
 from ..props.distribute import DISTRIBUTE
 from ..props.layers import suffix_of
@@ -67,7 +68,7 @@ class ShapesOperator(SurfaceOperator):
             types = {"shape_attribute": "INT", "distance_attribute": "FLOAT", "uv": "FLOAT2"}
             check_attribute_names(source, names, types)
         request = _request(self, context, source, settings)
-        self._templates = request.templates
+        self._templates = tuple(sized(template) for template in request.templates)
         if settings.mirror_x:
             with mesh_of(context, source, settings.use_modifiers) as mesh:
                 mirror = read_mirror(source, mesh, request.surface)

@@ -3407,8 +3407,7 @@ class Placements:
     def mirrored(self) -> NDArray[np.bool_]:
         """(n,) bool."""
     def __len__(self) -> int: ...
-    def __getitem__(self, index: SupportsIndex | slice | ArrayLike) -> Placements:
-        """Placements of some: an integer, a slice, or an array of indices or booleans, as NumPy takes them."""
+    def __getitem__(self, index: SupportsIndex | slice | ArrayLike) -> Placements: ...
 
 @final
 class ConformedPoints:
@@ -3607,7 +3606,7 @@ def map_shapes(
         mesh: a mesh.
         shapes: a Shape or a sequence of them.
         placements: a Placements.
-        field: None for the exponential map, or a DirectionField of the same mesh.
+        field: None for the exponential map, or a DirectionField of the same mesh; or a sequence of them, one a shape.
         limits: (smallest, largest) factor by which lengths may change from the plane to the surface: the singular values.
         threads: 0 for all cores; never changes the result.
         job: progress and cancellation.
@@ -3721,7 +3720,7 @@ class Distribution:
         """The mesh."""
     @property
     def field(self) -> DirectionField | None:
-        """The DirectionField that copies bend along, or None."""
+        """The DirectionField that copies bend along, a tuple of one a shape, or None."""
     @property
     def shapes(self) -> list[Shape]:
         """List of the Shapes."""
@@ -3778,9 +3777,11 @@ def distribute(
         shapes: a Shape or a sequence of Shapes.
         counts: None: as many as find room; or one integer a shape (one for all where there is one shape, or with shares).
         field: DirectionField of the mesh: x axes of the shapes point along one of its directions, chosen at random among those
-            that make a difference. None: the smoothest field of lines.
-        density: (V,) wanted number of copies per area, only ratios matter; needs counts.
-        size: scale of the shapes, mesh units for one unit of their planes: a number, or (V,).
+            that make a difference; or a sequence of them, one a shape. None: the smoothest field of lines.
+        density: (V,) wanted number of copies per area, only ratios matter; needs counts. Or one such array a shape, as (n, V)
+            or a sequence: each shape then follows its own.
+        size: scale of the shapes, mesh units for one unit of their planes: a number, or (V,); or one a shape: (n,), (n, V) or a
+            sequence of numbers and arrays. What is as long as there are vertices is one a vertex.
         seed: integer >= 0.
         mode: "random", or "packed": one beside the other in a front that sweeps over the surface, denser by a quarter and more;
             or a number from 0 (random) to 1 (packed).
@@ -3791,6 +3792,10 @@ def distribute(
         gap: least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
         size_range: (smallest, largest): every copy is scaled by another factor in this range.
         forbidden: (F,) booleans: faces that nothing may touch.
+        around: Placements of these shapes that lie on the surface already: the others are laid around them. They come first in
+            the result, as they are, and count as copies of their shapes, whatever the counts say. The others keep the gap to
+            them, or half of it where they lie nearer to the border than that; of themselves only that none meets another is
+            asked.
         mirror: half of the copies are mirrored, at random.
         bend: copies bend along the field's curves, as `map_shapes` lays them when given the field: for long shapes. Needs a
             field; not with maximal.
@@ -3806,7 +3811,8 @@ def distribute(
         InputError: naming the argument: no shape; counts of another number than shapes, or negative; shares of another number,
             negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field
             or with maximal;
-            sizes or density of the wrong length, not finite or not positive; density zero everywhere, without counts or with
+            sizes or density of the wrong length, not finite or not positive; fields, sizes or densities of another number
+            than shapes; copies around which to lay that meet each other or do not fit where they are; density zero everywhere, without counts or with
             maximal; a copy larger than the surface, alone or with half of the gap around; everything forbidden.
         Cancelled: the job was.
 

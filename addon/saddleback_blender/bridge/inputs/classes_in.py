@@ -127,7 +127,7 @@ def read_kept(
     shifts = np.array([template.shift for template in own])[shape] * np.array([t.scale for t in own])[shape][:, None]
     local = scales * shifts
     feet = points - x * local[:, :1] - y * local[:, 1:2] - z * local[:, 2:]
-    return KeptShapes(shape, feet, x, size, mirrored)
+    return KeptShapes(shape, feet, x, z, size, mirrored)
 
 
 def _column(mesh: bpy.types.Mesh, name: str, width: int) -> Reals:

@@ -70,7 +70,10 @@ def kept_placements(kept: KeptShapes, mesh: Any, name: str) -> Any:
     corners = mesh.vertices[mesh.triangles[center.faces]]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     first /= np.linalg.norm(first, axis=1, keepdims=True)
-    across = np.cross(np.cross(first, second), first)
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    angle = np.arctan2((across * kept.ahead).sum(axis=1), (first * kept.ahead).sum(axis=1))
+    normals = np.cross(first, second)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    # Frames stand on smooth normals: what was turned into them from the face is turned back.
+    steep = (kept.ahead * normals).sum(axis=1) / (kept.up * normals).sum(axis=1)
+    ahead = kept.ahead - steep[:, None] * kept.up
+    angle = np.arctan2((np.cross(normals, first) * ahead).sum(axis=1), (first * ahead).sum(axis=1))
     return sb.Placements(kept.shape, center, angle, KEPT_SCALE * kept.scales, kept.mirrored)
