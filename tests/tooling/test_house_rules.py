@@ -144,7 +144,7 @@ SUBFOLDERS = {
     "mesh": ["tables", "read", "repair", "soup"],
     "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "cuda"],
     "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],
-    "tessellation": ["log_map", "cells", "relaxation", "baking"],
+    "tessellation": ["bisectors", "log_map", "cells", "relaxation", "baking"],
     "field": ["linear", "connection", "smoothing"],
     "distribution": ["check"],
 }

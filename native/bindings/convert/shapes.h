@@ -28,7 +28,7 @@ Placements as_placements(const py::object& value, const Mesh& mesh, std::size_t 
 
 /// Fields of `field`: none, one DirectionField, or a sequence of them. They live as long as the object does.
 std::vector<const DirectionField*> as_fields(const py::object& value);
-/// What to keep of it: a sequence as a tuple that nobody changes.
+/// Returns what to keep of it: a sequence as a tuple that nobody changes.
 py::object kept_fields(const py::object& value);
 
 }  // namespace saddleback::bindings

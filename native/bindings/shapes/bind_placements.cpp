@@ -66,7 +66,7 @@ Placements make_placements(const py::object& shape, const py::object& center, co
   return result;
 }
 
-/// Those of an index, a slice, or an array of booleans or indices, as NumPy picks them.
+/// Returns those of an index, a slice, or an array of booleans or indices, as NumPy picks them.
 Placements picked(const Placements& self, const py::object& index) {
   const py::object numbers = py::module_::import("numpy").attr("arange")(self.size());
   const py::object chosen = numbers[index];

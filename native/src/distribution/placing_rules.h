@@ -49,7 +49,7 @@ class PlacingRules {
   double largest_radius() const { return largest_radius_; }
   double smallest_radius() const { return smallest_radius_; }
   double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
-  /// Of kinds of different sizes larger ones are tried more often, in proportion to their areas.
+  /// Returns how often to try it, against others: by their areas.
   double weight_of(const Kind& kind) const;
   double inradius(Index kind) const { return inradii_[kinds_[kind].shape]; }
   /// Returns the circumradius of the smallest copies where shapes are largest, without the gap.
@@ -82,7 +82,7 @@ class PlacingRules {
   Copy copy(const Placement& placement) const {
     return {placement, &body(placement.shape, placement.mirrored, placement.scale), 0};
   }
-  /// The same without the gap, of one that lies there already.
+  /// Returns the same without the gap, of one that lies there already.
   Copy bare_copy(const Placement& placement) const {
     return {placement, bare_[2 * static_cast<std::size_t>(placement.shape) + (placement.mirrored ? 1 : 0)].get(), 0};
   }

@@ -123,7 +123,7 @@ def test_instances_are_as_large_as_the_copies_that_are_laid():
 
 
 def test_what_is_kept_stays_and_the_rest_is_laid_around_it():
-    large, small = add_shapes()
+    add_shapes()
     ball = sphere("Ball", 4)
     ball.location, ball.rotation_euler, ball.scale = (1, 2, 3), (0.3, 0.4, 0.5), (2, 2, 2)
     bpy.context.view_layer.update()

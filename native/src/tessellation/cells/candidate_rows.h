@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tessellation/cells/bisectors/edge_envelope.h"
+#include "tessellation/bisectors/edge_envelope.h"
 #include "tessellation/log_map/site_labels.h"
 
 namespace saddleback {

@@ -7,7 +7,7 @@
 
 #include "saddleback/mesh/mesh.h"
 
-#include "tessellation/cells/bisectors/edge_envelope.h"
+#include "tessellation/bisectors/edge_envelope.h"
 #include "tessellation/cells/cell_candidates.h"
 
 namespace saddleback {

@@ -2,7 +2,7 @@
 
 #include "saddleback/tessellation/centroidal_voronoi.h"
 
-#include "tessellation/cells/bisectors/cell_complex.h"
+#include "tessellation/cells/cell_complex.h"
 
 namespace saddleback {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tessellation/cells/bisectors/face_partition.h"
+#include "tessellation/bisectors/face_partition.h"
 #include "tessellation/cells/face_candidates.h"
 
 namespace saddleback {

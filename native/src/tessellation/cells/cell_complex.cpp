@@ -1,4 +1,4 @@
-#include "tessellation/cells/bisectors/cell_complex.h"
+#include "tessellation/cells/cell_complex.h"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
-#include "tessellation/cells/bisectors/face_partition.h"
+#include "tessellation/bisectors/face_partition.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "predicates/orient_3d.h"
 #include "predicates/plane_predicates.h"
-#include "tessellation/cells/bisectors/edge_envelope.h"
+#include "tessellation/bisectors/edge_envelope.h"
 
 namespace saddleback {
 namespace {

@@ -1,4 +1,4 @@
-#include "tessellation/cells/bisectors/edge_envelope.h"
+#include "tessellation/bisectors/edge_envelope.h"
 
 #include <algorithm>
 
