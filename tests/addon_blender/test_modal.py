@@ -364,6 +364,61 @@ def test_enter_keeps_the_cells_as_they_are(item, monkeypatch):
     assert not live_preview.shown
 
 
+def test_cells_of_a_live_run_follow_the_brush_until_enter(item):
+    """In a paint mode it goes on with whatever is painted, and clicks are the brush's."""
+    group = item.vertex_groups.new(name="paint")
+    group.add([0], 1.0, "REPLACE")
+    bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+    settings = {"density_source": "VERTEX_GROUP", "density_name": "paint", "density_smaller_by": 4.0}
+    operator, context = pressed_live(count=60, iterations=20, k=30, **settings)
+    operator.invoke(context, None)
+    shown = wait_for_lines(operator, context)
+
+    def near(places):
+        return np.linalg.norm(places[:, :2] - 0.8, axis=1) < 0.15
+
+    def steps(until, seconds=60.0):
+        deadline = time.monotonic() + seconds
+        while not until():
+            assert time.monotonic() < deadline and operator.modal(context, TIMER) == {"PASS_THROUGH"}
+            time.sleep(0.01)
+
+    steps(lambda: operator._density and not operator._task.progress._can_settle)  # even, and it waits
+    before = int(near(shown.ends).sum())
+    places = np.array([vertex.co for vertex in item.data.vertices])
+    for _ in range(2):  # a dab, and another one that is the same
+        group.add(np.flatnonzero(near(places)).tolist(), 1.0, "REPLACE")
+        item.data.update_tag()
+        bpy.context.view_layer.update()
+    steps(lambda: near(shown.ends).sum() > 1.2 * before)
+    steps(lambda: not operator._task.progress._can_settle)
+    click = SimpleNamespace(type="LEFTMOUSE", value="PRESS", ctrl=False, oskey=False, mouse_x=0, mouse_y=0)
+    assert operator.modal(context, click) == {"PASS_THROUGH"} and operator._task is not None
+    assert "saddleback_cell" not in item.data.attributes
+    operator.modal(context, ENTER)
+    assert run_to_end(operator, context) == {"FINISHED"}
+    cells = attribute(item, "saddleback_cell")
+    assert set(cells) == set(range(60))
+    assert len(set(cells[near(places)])) > 0.15 * 60  # 7 % of the area
+    assert attribute(item, "saddleback_density")[near(places)].min() == attribute(item, "saddleback_density").max()
+    assert not live_preview.shown and operator._note not in bpy.app.handlers.depsgraph_update_post
+
+
+def test_escape_ends_a_live_run_that_waits_for_the_brush(item):
+    item.vertex_groups.new(name="paint").add([0], 1.0, "REPLACE")
+    bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+    before = fingerprint()
+    operator, context = pressed_live(count=20, iterations=2, k=30, density_source="VERTEX_GROUP", density_name="paint",
+                                     density_smaller_by=4.0)  # fmt: skip
+    operator.invoke(context, None)
+    wait_for_lines(operator, context)
+    task = operator._task
+    assert operator.modal(context, ESC) == {"CANCELLED"}
+    task.join()
+    assert fingerprint() == before and not live_preview.shown
+    assert operator._note not in bpy.app.handlers.depsgraph_update_post
+
+
 def test_a_live_run_that_ends_by_itself_is_the_script_s(item):
     operator, context = pressed_live(count=30, iterations=5, k=30)
     operator.invoke(context, None)

@@ -43,6 +43,16 @@ class FlowingCells:
         self._newest: LiveStep | None = None
         self._frame = ("", "")
         self._sites: Any = None
+        self._kept: tuple[tuple[str, str], Reals] | None = None
+
+    def begin_at(self, frame: tuple[str, str], places: Reals) -> None:
+        """Notes where cells are that another run made, of a frame: places (n, 3)."""
+        self._kept = frame, places
+
+    def take_kept(self, frame: tuple[str, str], mesh: Any) -> None:
+        """Goes on from those cells, where they are of this frame and there are none yet."""
+        if self._frame != frame and self._kept is not None and self._kept[0] == frame:
+            self._frame, self._sites = frame, native.load().project(mesh, self._kept[1])
 
     def newest(self) -> LiveStep | None:
         """The latest lines between cells, None where they were taken before."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from . import native
+from .progress import Progress
+from .results import Reals
 from .solids.edge_network import EdgeNetwork, edge_network
 
 LOOK = 0.02  # seconds between looks at the relaxation
@@ -28,13 +30,46 @@ class LiveStep:
 class LiveCells:
     """Follows one relaxation. The run opens `follow`; any other thread takes what is new with `newest`.
 
-    Nothing is made before somebody looks.
+    Nothing is made before somebody looks. One that `stays` goes on with each density that it is given, until `keep`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, stays: bool = False) -> None:
+        self.stays = stays
+        self._news = threading.Event()
+        self._painted: Any = None
+        self._used: Reals | None = None
+        self._round = 0  # of relaxations, each by a density
         self._newest: LiveStep | None = None
         self._ended = threading.Event()
         self._is_looked_at = False
+
+    def change_density(self, painted: Any) -> None:
+        """Gives what was painted since. The caller then lets the relaxation settle."""
+        self._painted = painted
+        self._news.set()
+
+    def keep(self) -> None:
+        """Asks for the cells as they are."""
+        self.stays = False
+        self._news.set()
+
+    def waits_for_density(self, progress: Progress) -> bool:
+        """Waits, where it stays; tells whether there is a new density."""
+        while self.stays and not self._news.wait(LOOK):
+            progress.check()
+        return self._news.is_set() and self._painted is not None
+
+    def take_density(self, density_of_paint: Callable[[Any], Reals | None]) -> Reals | None:
+        """Returns the new density (n,)."""
+        self._news.clear()
+        self._round += 1
+        painted, self._painted = self._painted, None
+        self._used = density_of_paint(painted)
+        return self._used
+
+    def density_used(self, first: Reals | None) -> Reals | None:
+        """The last one (n,), or the first where there was no other."""
+        return first if self._used is None else self._used
 
     def newest(self) -> LiveStep | None:
         """The latest step whose lines are known, None where it was taken before."""
@@ -57,10 +92,10 @@ class LiveCells:
             follower.join()
 
     def _follow(self, graph: Any, watch: Any, job: Any) -> None:
-        sb, shown = native.load(), -1
+        sb, shown = native.load(), (-1, -1)
         while not self._ended.is_set():
-            step = watch.latest()
-            if not self._is_looked_at or step is None or step.iterations == shown:
+            step, number = watch.latest(), self._round
+            if not self._is_looked_at or step is None or (number, step.iterations) == shown:
                 self._ended.wait(LOOK)
                 continue
             try:
@@ -69,5 +104,5 @@ class LiveCells:
                 return
             closed = np.asarray(cells.edge_closed, bool)
             lines = edge_network(cells.edge_points, cells.edge_offsets, cells.edge_cells, closed)
-            shown = step.iterations
-            self._newest = LiveStep(lines, shown)
+            shown = number, step.iterations
+            self._newest = LiveStep(lines, step.iterations)

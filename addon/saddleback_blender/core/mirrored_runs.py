@@ -96,6 +96,7 @@ def tessellate(request: TessellateRequest, mirror: Mirror, progress: Progress) -
         edge_offsets=np.concatenate([result.edge_offsets, result.edge_offsets[1:] + result.edge_offsets[-1]]),
         edge_cells=np.concatenate([result.edge_cells, twins[result.edge_cells]]),
         edge_closed=np.tile(result.edge_closed, 2),
+        frame=("", ""),
         twin=np.concatenate([np.arange(count), np.flatnonzero(~on)]).astype(np.int32),
         mesh=None if result.mesh is None else _cells(result.mesh, mirror, twins),
         polygons=None if result.polygons is None else _polygons(result.polygons, mirror, twins, progress),

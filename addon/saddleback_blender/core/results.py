@@ -152,6 +152,7 @@ class CellsResult:
     figures: Figures | None = None  # None where the sites have no triangle
     exchanged: int = 0  # cells that were moved to where the dual mesh needs them
     twin: Indices | None = None  # (n,) where it was mirrored: the cell of the one side that each is the mirror of
+    frame: tuple[str, str] = ("", "")  # names the surface, and all else that decided on the cells but the density
 
     @property
     def count(self) -> int:

@@ -21,7 +21,7 @@ from .flowing_cells import UNSEEN
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .lengths import RIB_SHARE
 from .progress import Progress
-from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
+from .requests import Density, DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
 from .results import CellsResult, DistanceResult, Dual, LampShell, Reals, SurfacePolygons
 from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
@@ -87,21 +87,15 @@ def solved_cells(
     density = density_of(request.density, surface, settings, mesh, lambda: graph, progress)
     moves = sites is None or settings.relax_sites
     iterations = settings.iterations if moves else 0
-    frame = digest(
-        settings.count if sites is None else sites,
-        settings.seed if sites is None else 0,
-        iterations,
-        settings.method if iterations else "",
-        _starts(request),
-        _annealing(request, iterations),
-        _closed_ball(request, iterations),
-        *_held(request),
-    )
+    frame = _frame(request, sites, iterations)
     what = digest(frame, density if sites is None or iterations else None)
     key = (choice.name(surface), what)
 
+    def of_paint(painted: Density | None) -> Reals | None:
+        return density_of(painted, surface, settings, mesh, lambda: graph, progress)
+
     def solve() -> Solved:
-        return _solve(request, mesh, graph, sites, density, iterations, progress)
+        return _solve(request, mesh, graph, sites, density, iterations, of_paint, progress)
 
     if request.flowing is not None and sites is None and iterations:
         key, solved = _flow(request, (key[0], frame), what, mesh, graph, density, solve, progress, cache)
@@ -109,8 +103,26 @@ def solved_cells(
         solved = cache.get(("cells", *key), solve, _solved_bytes)
     else:  # to be looked at, however often it ran before, and perhaps stopped on the way
         solved = solve()
-        key = (key[0], digest(what, solved.energy, "live"))
-    return mesh, density, solved, key
+        density = request.live.density_used(density)
+        key = (key[0], digest(what, density, solved.energy, "live"))
+    if request.flowing is not None and sites is not None:
+        request.flowing.show(solved.cells, 0)
+    return mesh, density, replace(solved, frame=(choice.name(surface), frame)), key
+
+
+def _frame(request: TessellateRequest, sites: Points | None, iterations: int) -> str:
+    """Names all that decides on the cells of a surface but the density, watched or not."""
+    settings, unseen = request.settings, replace(request, live=None)
+    return digest(
+        settings.count if sites is None else sites,
+        settings.seed if sites is None else 0,
+        iterations,
+        settings.method if iterations else "",
+        _starts(unseen),
+        _annealing(unseen, iterations),
+        _closed_ball(request, iterations),
+        *_held(request),
+    )
 
 
 def distance(request: DistanceRequest, progress: Progress, cache: Cache | None = None) -> DistanceResult:
@@ -181,6 +193,7 @@ class Solved:
     stop_reason: str
     normalized_energy: float | None  # None where nothing was relaxed
     exchanged: int  # sites that were moved for the sake of the dual mesh
+    frame: tuple[str, str] = ("", "")  # of the result
 
 
 def _held(request: TessellateRequest) -> tuple[object, ...]:
@@ -215,6 +228,7 @@ def _solve(
     sites: Points | None,
     density: Reals | None,
     iterations: int,
+    density_of_paint: Callable[[Density | None], Reals | None],
     progress: Progress,
 ) -> Solved:
     sb, settings = native.load(), request.settings
@@ -225,19 +239,23 @@ def _solve(
         if points is None:
             curves = feature_lines(request.surface, mesh, settings, request.marked_edges)
             choice = {"count": settings.count, "curves": curves or None}
-        live = request.live
-        with (
-            nullcontext() if live is None else live.follow(graph) as watch,
-            progress.stage(0.9, "evening out the cells", can_settle=live is not None) as job,
-        ):
-            # To be watched from a start that is far from even; else from coarse cells that are even already.
-            cvt = sb.centroidal_voronoi(
-                graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
-                starts=_starts(request), annealing=_annealing(request, iterations),
-                closed_ball=_closed_ball(request, iterations),
-                start="auto" if live is None else "sample", least_move=0.0 if live is None else UNSEEN,
-                return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
-            )  # fmt: skip
+        live, is_newer = request.live, True
+        with nullcontext() if live is None else live.follow(graph) as watch:
+            while is_newer:
+                with progress.stage(0.9, "evening out the cells", can_settle=live is not None) as job:
+                    # To be watched from a start that is far from even; else from coarse cells that are even already.
+                    cvt = sb.centroidal_voronoi(
+                        graph, density=density, method=settings.method.lower(), max_iterations=iterations,
+                        seed=settings.seed, starts=_starts(request), annealing=_annealing(request, iterations),
+                        closed_ball=_closed_ball(request, iterations),
+                        start="auto" if live is None else "sample", least_move=0.0 if live is None else UNSEEN,
+                        return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
+                    )  # fmt: skip
+                is_newer = live is not None and live.waits_for_density(progress)
+                if live is not None and is_newer:
+                    density, choice["sites"] = live.take_density(density_of_paint), cvt.sites
+                    choice.pop("count", None)
+                    choice.pop("curves", None)
         cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)
         normalized, exchanged = float(cvt.normalized_energy), int(cvt.exchanged)
@@ -275,6 +293,7 @@ def _flow(
     assert flowing is not None
     flow_key = (frame[0], digest(what, flowing.word))
     known = [found for found in (key, flow_key) if ("cells", *found) in cache]
+    flowing.take_kept(frame, mesh)
     flows = not known and flowing.sites(frame) is not None and not _has_lines(request)
 
     def flow() -> Solved:
@@ -305,6 +324,7 @@ def _result(request: TessellateRequest, solved: Solved, density: Reals | None) -
         vertex_cell=surface.spread(cells.vertex_cell, -1),
         vertex_distance=surface.spread(cells.vertex_distance, np.inf),
         vertex_density=None if density is None else surface.spread(density, 0.0),
+        frame=solved.frame,
         sites_position=solved.site_positions,
         sites_normal=solved.site_normals,
         cell_area=np.asarray(cells.areas, np.float64),

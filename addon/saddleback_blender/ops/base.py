@@ -84,6 +84,7 @@ class SurfaceOperator(PolledOperator):
     _called: tuple[str, ...]  # names of settings that the caller gave
     _others: list[str]  # names of selected objects that are still to be worked on
     _is_filled = False  # the active object is done, others may follow
+    _is_watched = False  # by a person, who can stop it
     _surface: Surface  # that the run is made on
     _follower: Follower | None = None
 
@@ -162,6 +163,7 @@ class SurfaceOperator(PolledOperator):
         if hasattr(self, "all_selected") and not self.properties.is_property_set("all_selected"):
             self.all_selected = context.window_manager.saddleback_all_selected
         self._begin(context)
+        self._is_watched = True
         return self._start(context)
 
     def _start(self, context: bpy.types.Context) -> set[str]:

@@ -45,15 +45,17 @@ from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
 from ..core.mirrored_runs import halved
 from ..core.progress import Progress
-from ..core.requests import CellPaint, Surface, TessellateRequest
+from ..core.requests import CellPaint, Surface, TessellateRequest, content_of
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from ..core.standing import with_anchors
-from ..props import keep_settings, settings_of
-from ..props.kept_sites import keep_sites
+from ..props import existing_group, keep_settings, settings_of
+from ..props.kept_sites import keep_sites, kept_cells
 from ..props.tessellate import TESSELLATE
 from .base import ALL_SELECTED, SurfaceOperator
 
+# Sources of density that a brush changes.
+PAINTED = ("VERTEX_GROUP", "ATTRIBUTE", "COLOR", "MASK", "SPREAD")
 # What the library's reasons to stop mean to a person; that all steps were done needs no word.
 ENDS = {
     "tolerance": " until nothing changed",
@@ -97,6 +99,7 @@ class CellsOperator(SurfaceOperator):
     settings_name = "tessellate"
     thickness: float
     cell_faces: str
+    density_source: str
     flowing: FlowingCells | None = None  # cells to go on from
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
@@ -112,6 +115,9 @@ class CellsOperator(SurfaceOperator):
             request = read_request(context, source, mesh, settings, self.measured)
             mirror = read_mirror(source, mesh, request.surface) if settings.mirror_x else None
         request = replace(request, live=live, flowing=self.flowing)
+        kept = kept_cells(source) if self.flowing is not None and existing_group(source, "tessellate") else None
+        if self.flowing is not None and kept is not None:
+            self.flowing.begin_at(*kept)
         if mirror is not None:
             self._surface = mirror.whole  # on which all of it lies
             run = partial(mirrored_runs.tessellate, halved(request, mirror), mirror)
@@ -151,7 +157,7 @@ class CellsOperator(SurfaceOperator):
             else:
                 self.drop(source, role)
         keep_settings(chosen, "tessellate", source)
-        keep_sites(source, result.sites_position)
+        keep_sites(source, result.sites_position, result.frame)
         if warning:
             self.report({"WARNING"}, warning)
         shell = "" if result.shell is None else shell_of(result.shell, *_units(context.scene))
@@ -198,15 +204,42 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
-        self._live = LiveCells()
+        is_painting = source.mode in ("WEIGHT_PAINT", "VERTEX_PAINT", "SCULPT") and self.density_source in PAINTED
+        self._live = LiveCells(stays=is_painting and self._is_watched)
+        self._density, self._source_name = "", source.name
         return self._gather(context, source, self._live)
 
     def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
         """Begins to show the cells."""
         self._preview = LivePreview(hair(source))
+        self._has_news = False
+        if self._live.stays:
+            bpy.app.handlers.depsgraph_update_post.append(self._note)
+
+    def _note(self, _scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
+        self._has_news = True
+
+    def _read_density(self) -> None:
+        """Lets cells flow to what was painted since."""
+        self._has_news = False
+        source, settings = bpy.data.objects.get(self._source_name), settings_of(self, TessellateSettings)
+        if source is None:
+            return
+        try:
+            with mesh_of(bpy.context, source, settings.use_modifiers) as mesh:
+                painted = read_density(source, mesh, settings)
+        except BadInputError:
+            return  # what cannot be read is told by the next run
+        content = content_of(painted)
+        if self._density not in ("", content) and self._task is not None:
+            self._live.change_density(painted)
+            self._task.progress.settle()
+        self._density = content
 
     def show_newest(self) -> None:
         """Shows the latest cells."""
+        if self._live.stays and (self._has_news or not self._density):
+            self._read_density()
         step = self._live.newest()
         if step is not None:
             self._preview.show(step.lines)
@@ -214,10 +247,15 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
     def end_watching(self) -> None:
         """Takes the cells away."""
         self._preview.remove()
+        if self._note in bpy.app.handlers.depsgraph_update_post:
+            bpy.app.handlers.depsgraph_update_post.remove(self._note)
 
     def keeps(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """ENTER, or a click into a 3D view."""
-        return _keeps(context, event)
+        """ENTER, or a click into a 3D view, where that does not paint."""
+        is_kept = _keeps(context, event) and not (self._live.stays and event.type == "LEFTMOUSE")
+        if is_kept:
+            self._live.keep()
+        return is_kept
 
 
 def _keeps(context: bpy.types.Context, event: bpy.types.Event) -> bool:

@@ -16,19 +16,26 @@ SITES = "sites"  # on the settings of Tessellate: places in the object's own spa
 MOST_KEPT = 100_000  # a file need not carry more: what needs them makes them anew
 
 
-def keep_sites(source: bpy.types.Object, places: Reals) -> None:
-    """Keeps world places (n, 3)."""
+def keep_sites(source: bpy.types.Object, places: Reals, frame: tuple[str, str]) -> None:
+    """Keeps world places (n, 3), and what they were found by."""
     group = source.saddleback.tessellate
     own = from_world(source, places) if len(places) <= MOST_KEPT else places[:0]
-    text = base64.b64encode(np.ascontiguousarray(own, "<f8").tobytes()).decode("ascii")
+    text = " ".join((*frame, base64.b64encode(np.ascontiguousarray(own, "<f8").tobytes()).decode("ascii")))
     rollback.remember_setting(group, SITES)
     setattr(group, SITES, text)
 
 
 def kept_sites(source: bpy.types.Object) -> Reals | None:
     """World places (n, 3) of the centers of the last cells; None where they are not known."""
+    kept = kept_cells(source)
+    return None if kept is None else kept[1]
+
+
+def kept_cells(source: bpy.types.Object) -> tuple[tuple[str, str], Reals] | None:
+    """What they were found by, and the places."""
     group = source.saddleback.tessellate
-    if not group.is_property_set(SITES):
+    if not group.is_property_set(SITES) or not getattr(group, SITES):
         return None
-    own = np.frombuffer(base64.b64decode(getattr(group, SITES)), "<f8").reshape(-1, 3)
-    return to_world(source, own) if len(own) else None
+    surface, frame, text = getattr(group, SITES).split(" ")
+    own = np.frombuffer(base64.b64decode(text), "<f8").reshape(-1, 3)
+    return ((surface, frame), to_world(source, own)) if len(own) else None

@@ -91,6 +91,24 @@ def test_cells_follow_the_brush_where_it_was(item):
     assert jobs.state.live["Sphere"] == ""
 
 
+@pytest.mark.parametrize("run", ["tessellate", "relax_live"])
+def test_cells_go_on_from_where_a_run_left_them(item, run, tmp_path):
+    """Also those of Relax Live, which no seed makes again, and those of a file that was opened."""
+    getattr(bpy.ops.saddleback, run)(count=80, seed=5, iterations=3)
+    path = str(tmp_path / "cells.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    cache.shared.clear()
+    item = bpy.data.objects["Sphere"]
+    before = cells(item)
+    steps()
+    paint(item, reach=0.15)
+    steps()
+    after = cells(item)
+    far = positions(item.data)[:, 0] < -0.5
+    assert (after != before).any() and (after[far] == before[far]).mean() > 0.9
+
+
 def test_a_new_count_makes_what_the_button_makes(item):
     item.saddleback.tessellate.count = 50
     steps()
