@@ -20,6 +20,7 @@ from . import (
     paint,
     path,
     repair,
+    sites,
     tessellate,
     voronoi_2d,
 )
@@ -31,6 +32,7 @@ CLASSES = (
     *distance.CLASSES,
     *path.CLASSES,
     *tessellate.CLASSES,
+    *sites.CLASSES,
     *voronoi_2d.CLASSES,
     *direction_field.CLASSES,
     *distribute.CLASSES,

@@ -10,6 +10,7 @@ MANUAL = "https://github.com/OWNER/saddleback/blob/main/docs/manual/"
 PAGES = {
     "tessellate": "tessellation.md",
     "relax_live": "tessellation.md",
+    "edit_sites": "tessellation.md",
     "distance": "distance.md",
     "path": "distance.md",
     "voronoi_2d": "voronoi_2d.md",
@@ -41,6 +42,7 @@ GROUPS = {
 ENTRIES = (
     ("tessellate", "MOD_EXPLODE"),
     ("relax_live", "PLAY"),
+    ("edit_sites", "EDITMODE_HLT"),
     ("voronoi_2d", "MESH_GRID"),
     None,
     ("distance", "DRIVER_DISTANCE"),

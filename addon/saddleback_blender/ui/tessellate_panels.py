@@ -94,7 +94,9 @@ class SADDLEBACK_PT_centers(SaddlebackOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_centers(self.split_layout(context), active_object(context).saddleback.tessellate)
+        layout = self.split_layout(context)
+        layout.operator("saddleback.edit_sites", icon="EDITMODE_HLT")
+        rows.draw_centers(layout, active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_dual(SaddlebackOutputPanel, bpy.types.Panel):

@@ -109,6 +109,25 @@ def test_cells_go_on_from_where_a_run_left_them(item, run, tmp_path):
     assert (after != before).any() and (after[far] == before[far]).mean() > 0.9
 
 
+def test_cells_follow_sites_that_are_edited_once_edit_mode_is_left(item):
+    before = cells(item)
+    bpy.ops.saddleback.edit_sites()
+    points = bpy.context.object
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    points.data.vertices[7].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="VERT")
+    bpy.context.view_layer.update()
+    for _ in range(5):
+        live.step(bpy.context)
+    np.testing.assert_array_equal(cells(item), before)
+    assert jobs.state.live["Sphere"] == live.WAITS["EDIT"]
+    bpy.ops.object.mode_set(mode="OBJECT")
+    steps()
+    assert len(np.unique(cells(item))) == 79 and jobs.state.live["Sphere"] == ""
+
+
 def test_a_new_count_makes_what_the_button_makes(item):
     item.saddleback.tessellate.count = 50
     steps()
