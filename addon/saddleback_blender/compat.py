@@ -38,16 +38,17 @@ def write_positions(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> Non
 def read_numbers(elements: Any, name: str, width: int = 1) -> NDArray[np.int32]:
     """(n * width,) numbers of other elements, or counts, that n elements of a mesh have.
 
-    Blender's own are unsigned: only between arrays of the same kind it copies without a loop in Python.
+    Blender's own are unsigned: only between arrays of the same kind it copies without a loop in Python. Under Windows
+    NumPy's uint32 is of another kind, a long.
     """
     numbers = np.empty(width * len(elements), np.int32)
-    elements.foreach_get(name, numbers.view(np.uint32))
+    elements.foreach_get(name, numbers.view(np.uintc))
     return numbers
 
 
 def write_numbers(elements: Any, name: str, numbers: NDArray[np.integer]) -> None:
     """Sets what `read_numbers` reads; of any shape."""
-    elements.foreach_set(name, np.ascontiguousarray(numbers, np.int32).ravel().view(np.uint32))
+    elements.foreach_set(name, np.ascontiguousarray(numbers, np.int32).ravel().view(np.uintc))
 
 
 def read_corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:

@@ -10,7 +10,7 @@ from functools import partial
 import bpy
 import numpy as np
 
-from .. import compat, prefs
+from .. import prefs
 from ..bridge.inputs.directions_in import read_directions
 from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
 from ..bridge.inputs.voronoi_in import read_uv
@@ -168,7 +168,9 @@ def _seen_cells(mesh: bpy.types.Mesh, name: str) -> Indices | None:
     attribute = mesh.attributes.get(name)
     if attribute is None or attribute.domain != "POINT" or attribute.data_type != "INT":
         return None
-    return compat.read_numbers(attribute.data, "value")
+    numbers = np.empty(len(attribute.data), np.int32)  # signed: -1 is no cell
+    attribute.data.foreach_get("value", numbers)
+    return numbers
 
 
 CLASSES = (SADDLEBACK_OT_bake,)
