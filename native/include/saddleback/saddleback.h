@@ -40,6 +40,7 @@
 #include "saddleback/shapes/shape.h"
 #include "saddleback/support/device_times.h"
 #include "saddleback/support/large_array.h"
+#include "saddleback/support/one_or_each.h"
 #include "saddleback/tessellation/bake_cells.h"
 #include "saddleback/tessellation/cell_cache.h"
 #include "saddleback/tessellation/cell_polygons.h"
