@@ -195,6 +195,12 @@ def show_color(mesh: bpy.types.Mesh, name: str) -> None:
     mesh.color_attributes.render_color_index = index
 
 
+def let_through(material: bpy.types.Material) -> None:
+    """Lets a transparent material show what lies behind it, as it does by itself from 4.2 on."""
+    if not hasattr(material, "surface_render_method"):
+        material.blend_method = material.shadow_method = "HASHED"
+
+
 def remove_material_slots(mesh: bpy.types.Mesh) -> None:
     """Removes all materials; faces keep their numbers. `materials.pop` would leave the objects' slots behind."""
     numbers = read_numbers(mesh.polygons, "material_index")

@@ -132,16 +132,21 @@ def test_outlines_that_are_none_are_told(shapes):
 
 
 @pytest.mark.parametrize("kind", ["ramp", "noise"])
-def test_images_without_a_clear_mask_are_refused(shapes, kind):
-    values = np.linspace(0, 1, 64)[None].repeat(64, 0) if kind == "ramp" else np.random.default_rng(1).random((64, 64))
-    image = bpy.data.images.new("Gray", 64, 64)
-    pixels = np.ones((64, 64, 4), np.float32)
-    pixels[..., :3] = values[..., None]
+def test_images_without_a_clear_mask_are_refused_or_whole(shapes, kind):
+    values = np.linspace(0, 1, 64)[None].repeat(48, 0) if kind == "ramp" else np.random.default_rng(1).random((48, 64))
+    image = bpy.data.images.new("Gray", 64, 48, alpha=True)
+    pixels = np.ones((48, 64, 4), np.float32)
+    pixels[..., 3] = values
     image.pixels.foreach_set(pixels.ravel())
     with pytest.raises(
-        BadInputError, match=r"image 'Gray' makes no shape: no clear mask, 3\d% of it is neither in nor out"
+        BadInputError, match=r"image 'Gray' makes no shape: no clear mask, \d\d% of it is neither in nor"
     ):
         read(shapes="IMAGE", shapes_image="Gray")
+    image.pixels.foreach_set(pixels[..., [3, 3, 3, 0]].ravel())
+    (whole,) = read(shapes="IMAGE", shapes_image="Gray")
+    ((loop,),) = whole.parts
+    np.testing.assert_allclose(whole.uv_of(loop), [(0, 0), (1, 0), (1, 1), (0, 1)], atol=1e-12)
+    np.testing.assert_allclose(loop * 40, [(-32, -24), (32, -24), (32, 24), (-32, 24)], atol=1e-9)
 
 
 def test_images_are_shapes_where_they_are_opaque_or_dark(shapes):

@@ -28,7 +28,7 @@ from .shapes.cut_shapes import cut_shapes
 from .shapes.overlapping import footprints, map_whole, tilted, tilted_frames
 from .shapes.shape_classes import class_densities, class_fields, class_sizes, kept_placements
 from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
-from .shapes.shape_templates import ShapeTemplate, sized
+from .shapes.shape_templates import ShapeTemplate, sized, uv_of_classes
 from .surfaces.local_frames import anchored
 
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
@@ -59,7 +59,7 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
             outline_anchors = anchored(surface, triangles, faces, barycentric, outlines.points, progress)
     cut = cut_anchors = None
     if settings.make_cut:
-        cut = cut_shapes(mesh, mapped, progress)
+        cut = cut_shapes(mesh, mapped, laid.templates, progress)
         if settings.follow_surface:
             cut_anchors = anchored(surface, triangles, cut.faces, cut.barycentric, cut.vertices, progress)
         cut = replace(cut, faces=surface.of_mesh(cut.faces), corner_faces=surface.of_mesh(cut.corner_faces))
@@ -67,10 +67,12 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         with progress.stage(0.97, "measuring the way to the outlines") as job:
             found = mapped.attributes(VALUES_REACH * laid.size, threads=request.threads, job=job)
         shape = np.ascontiguousarray(found.placement, np.int32)
+        classes = np.where(shape >= 0, np.asarray(mapped.placements.shape)[shape], -1)
+        uv = uv_of_classes(laid.templates, classes, np.asarray(found.uv))
         values = ShapeValues(
             shape=surface.spread(shape, -1),
             distance=surface.spread(np.asarray(found.distance), np.inf),
-            uv=np.stack([surface.spread(np.ascontiguousarray(c), 0.0) for c in 0.5 + 0.5 * found.uv.T], axis=1),
+            uv=np.stack([surface.spread(np.ascontiguousarray(c), 0.0) for c in uv.T], axis=1),
         )
     progress.check()
     placements = result.placements

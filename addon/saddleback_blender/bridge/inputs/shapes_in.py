@@ -17,10 +17,10 @@ from ...core.errors import BadInputError
 from ...core.fields.image_colors import to_linear
 from ...core.results import Indices, Reals
 from ...core.settings import DistributeSettings
-from ...core.shapes.mask_shapes import parts_of_image, silhouette
+from ...core.shapes.mask_shapes import MOST_GRAY, grayness, parts_of_image, silhouette, whole_image
 from ...core.shapes.outline_loops import border_loops, is_seen_once, parts_of_loops
 from ...core.shapes.shape_presets import PRESETS, preset
-from ...core.shapes.shape_templates import Parts, ShapeTemplate, Solid, box_uv, fitted, joined
+from ...core.shapes.shape_templates import Parts, Picture, ShapeTemplate, Solid, box_uv, fitted, joined
 from ..tokens import SOURCE
 from .curves_in import polylines_of
 from .evaluated import evaluated
@@ -220,19 +220,28 @@ def _image(source: bpy.types.Object, name: str) -> bpy.types.Image:
 
 
 def _of_image(source: bpy.types.Object, image: bpy.types.Image) -> ShapeTemplate:
-    """Returns where the image is opaque; of an image without transparency where it is dark."""
+    """Returns where the image is opaque; of one without transparency where it is dark, or all of it where much of it is
+    neither dark nor light, as of a photograph.
+    """
     pixels, is_encoded = read_pixels(source, image)
+    rows, columns = pixels.shape[:2]
     mask = pixels[:, :, 3].astype(np.float64)
-    if mask.min() >= 0.5:
-        colors = pixels[:, :, :3].astype(np.float64)
-        mask = 1.0 - (to_linear(colors) if is_encoded else colors) @ REC_709
+    colors = pixels[:, :, :3].astype(np.float64)
+    colors = to_linear(colors) if is_encoded else colors
+    is_transparent = bool(mask.min() < 0.5)
+    if not is_transparent:
+        mask = 1.0 - colors @ REC_709
     try:
-        parts = parts_of_image(mask)
+        is_whole = not is_transparent and grayness(mask) > MOST_GRAY
+        parts = whole_image(rows, columns) if is_whole else parts_of_image(mask)
     except native.load().InputError as error:
         raise BadInputError(
             f"'{source.name}': image '{image.name}' makes no shape: {outline_refusal(str(error))}"
         ) from error
-    return fitted(image.name, parts, _center_of_box(parts))
+    seen = np.ones_like(mask, bool) if is_whole else mask >= 0.5
+    color = tuple(colors[seen].mean(axis=0).tolist())
+    picture = Picture(name_of(bpy.data.images, image), columns, rows, is_transparent, color)
+    return replace(fitted(image.name, parts, _center_of_box(parts)), picture=picture)
 
 
 def _center_of_box(parts: Sequence[Sequence[Reals]]) -> Reals:

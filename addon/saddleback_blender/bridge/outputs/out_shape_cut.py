@@ -68,7 +68,7 @@ def write_cut(
     mesh.polygons.foreach_set("use_smooth", np.ascontiguousarray(corners.smooth[::3]))
     for material in materials or [None]:
         mesh.materials.append(material)
-    firsts = add_materials(mesh, templates, settings.look)
+    firsts = add_materials(mesh, templates, settings.look, is_cut=True)
     slots = np.where(cut.copy >= 0, firsts[cut.shape], corners.material[::3]).astype(np.int32)
     mesh.polygons.foreach_set("material_index", slots)
     mesh.update()

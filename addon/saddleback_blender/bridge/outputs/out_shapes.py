@@ -18,6 +18,7 @@ from ...core.shapes.shape_templates import ShapeTemplate
 from ...core.surfaces.quaternions import axes_of, euler_of, quaternions_of, turned
 from ...finishes import material_of, palette_of
 from ...follow_nodes import WEIGHTS_ATTRIBUTE, stop_following
+from ...image_materials import image_material
 from ...looks import NO_LOOK, finish_of
 from ...shape_nodes import set_shapes
 from ..inputs.materials_in import shown_materials
@@ -254,7 +255,7 @@ def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
     flat = np.concatenate(loops)
     vertices = np.column_stack([flat, np.full(len(flat), 0.02)])
     corners = np.arange(len(flat), dtype=np.int32)
-    _fill(mesh, vertices, corners, offsets, 0.5 + 0.5 * flat, np.zeros(len(loops), bool))
+    _fill(mesh, vertices, corners, offsets, template.uv_of(flat), np.zeros(len(loops), bool))
 
 
 def random_numbers(result: DistributeResult, seed: int) -> Reals:
@@ -270,19 +271,32 @@ def _colors(classes: Indices, random: Reals, look: str) -> Reals:
     return palette_colors(random, palette_of(finish), finish.contrast)
 
 
-def add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate], look: str = NO_LOOK) -> np.ndarray:
+def add_materials(
+    mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate], look: str = NO_LOOK, is_cut: bool = False
+) -> np.ndarray:
     """Adds the materials of all classes; returns (classes,) the slot at which those of each begin."""
     firsts = []
     for template in templates:
         firsts.append(len(mesh.materials))
-        own = _own_materials(template)
+        own = _own_materials(template, is_cut)
         for material in own if any(own) else [material_of(look, nodes.shapes_material)]:
             mesh.materials.append(material)
     return np.array(firsts, np.int32)
 
 
-def _own_materials(template: ShapeTemplate) -> list[bpy.types.Material | None]:
-    """Those of the object that it was read from, or of what a collection instance shows."""
+def _own_materials(template: ShapeTemplate, is_cut: bool = False) -> list[bpy.types.Material | None]:
+    """Those of the object that it was read from, of what a collection instance shows, or of its picture.
+
+    A picture has one for SIDES, too, which is not transparent, as it would be along its border; cut into the surface
+    all of it is so, or one would look into the body.
+    """
+    picture = template.picture
+    image = find(bpy.data.images, picture.name) if picture else None
+    if picture and image:
+        opaque = image_material(image, SHAPE_UV if is_cut else UV_NAME, picture.color, is_transparent=False)
+        if is_cut or not picture.is_transparent:
+            return [opaque, opaque]
+        return [image_material(image, UV_NAME, picture.color, is_transparent=True), opaque]
     if template.materials:
         return [find(bpy.data.materials, name) for name in template.materials]
     return _materials(find(bpy.data.objects, template.source))

@@ -14,7 +14,7 @@ from ..progress import Progress
 from ..results import BentCopies, Indices, Reals
 from ..settings import DistributeSettings
 from ..surfaces.normals import normals_at
-from .shape_templates import ShapeTemplate, Solid
+from .shape_templates import SIDES, ShapeTemplate, Solid
 
 THICKNESS = 0.12  # of a shape's radius: of raised pieces of surface, where none is given
 
@@ -39,7 +39,7 @@ def bent_copies(
             progress.check()
         if number not in mapped.failures and templates[shape].solid is None:
             height = settings.thickness or THICKNESS * float(scales[number])
-            pieces.append(_raised(mesh, mapped.patch(number), height, bool(mirrored[number]), number, shape))
+            pieces.append(_raised(mesh, mapped.patch(number), height, bool(mirrored[number]), number, shape, template))
     return _joined(pieces)
 
 
@@ -142,8 +142,13 @@ def _runs(firsts: Indices, sizes: Indices, is_backwards: NDArray[np.bool_]) -> N
     return runs
 
 
-def _raised(mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, shape: int) -> _Piece:
-    """A piece of the surface, raised by a height, with walls down to the surface all around."""
+def _raised(
+    mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, shape: int, template: ShapeTemplate
+) -> _Piece:
+    """A piece of the surface, raised by a height, with walls down to the surface all around.
+
+    Those of a picture have its second material: it is not transparent, as a picture is all along its border.
+    """
     places, triangles = np.asarray(patch.vertices), np.asarray(patch.triangles)
     points = patch.surface
     up = normals_at(mesh.vertices, mesh.triangles, points.faces, points.barycentric)
@@ -152,8 +157,7 @@ def _raised(mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, 
     rim = np.unique(np.concatenate([begin, end]))
     below[rim] = len(places) + np.arange(len(rim))
     walls = np.stack([below[begin], below[end], end, begin], axis=1)
-    uv = np.asarray(patch.uv)
-    uv = 0.5 + 0.5 * uv * (1.0, -1.0 if is_mirrored else 1.0)
+    uv = template.uv_of(np.asarray(patch.uv) * (1.0, -1.0 if is_mirrored else 1.0))
     uv = np.concatenate([uv, uv[rim]])
     corners = np.concatenate([triangles.ravel(), walls.ravel()]).astype(np.int32)
     sizes = np.concatenate([np.full(len(triangles), 3), np.full(len(walls), 4)])
@@ -166,7 +170,7 @@ def _raised(mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, 
         offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
         uv=uv[corners],
         smooth=is_top,
-        material=np.zeros(len(sizes), np.int32),
+        material=np.where(is_top, 0, SIDES if template.picture else 0).astype(np.int32),
         copy=np.full(len(sizes), copy, np.int32),
         shape=shape,
     )

@@ -3,22 +3,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from ..progress import Progress
 from ..results import CutShapes, Indices, Reals
+from .shape_templates import ShapeTemplate, uv_of_classes
 
 
-def cut_shapes(mesh: Any, mapped: Any, progress: Progress) -> CutShapes:
+def cut_shapes(mesh: Any, mapped: Any, templates: Sequence[ShapeTemplate], progress: Progress) -> CutShapes:
     """The whole surface as triangles that know their shape, and where in it their corners are."""
     with progress.stage(0.96, "cutting outlines into the surface") as job:
         cut = mapped.cut(job=job)
     triangles, copy = np.asarray(cut.triangles), np.asarray(cut.triangle_shape)
     corner_faces = np.repeat(np.asarray(cut.triangle_face), 3)
-    inside = np.repeat(copy >= 0, 3)
-    uv = np.where(inside[:, None], 0.5 + 0.5 * np.asarray(cut.uv)[triangles.ravel()], 0.0)
+    shape = np.where(copy >= 0, np.asarray(mapped.placements.shape)[copy], -1).astype(np.int32)
+    classes, places = np.repeat(shape, 3), np.asarray(cut.uv)[triangles.ravel()]
+    uv = np.where(classes[:, None] >= 0, uv_of_classes(templates, classes, places), 0.0)
     return CutShapes(
         vertices=np.asarray(cut.vertices),
         faces=cut.surface.faces,
@@ -32,7 +35,7 @@ def cut_shapes(mesh: Any, mapped: Any, progress: Progress) -> CutShapes:
             ]
         ),
         copy=copy,
-        shape=np.where(copy >= 0, np.asarray(mapped.placements.shape)[copy], -1).astype(np.int32),
+        shape=shape,
         uv=uv,
     )
 

@@ -67,11 +67,11 @@ def _draw(mask: NDArray[np.float64], triangle: Reals) -> None:
 
 
 def parts_of_image(mask: Reals) -> Parts:
-    """Outlines, in pixels, of an image's mask (rows, columns), the first row below.
+    """Outlines of an image's mask (rows, columns), the first row below, in its pixels from the lower left corner.
 
     Raises the library's InputError where there is nothing clear to see.
     """
-    gray = ((mask > 0.25) & (mask < 0.75)).mean()
+    gray = grayness(mask)
     if gray > MOST_GRAY:
         raise native.load().InputError(
             f"image: no clear mask, {gray:.0%} of it is neither in nor out; give it transparency or more contrast"
@@ -79,5 +79,17 @@ def parts_of_image(mask: Reals) -> Parts:
     rows, columns = mask.shape
     block = max(1, -(-max(rows, columns) // PIXELS))
     cut = mask[: rows // block * block, : columns // block * block]
-    small = cut.reshape(rows // block, block, columns // block, block).mean(axis=(1, 3))
-    return parts_of_mask(np.pad(small, MARGIN)[::-1])
+    small = np.pad(cut.reshape(rows // block, block, columns // block, block).mean(axis=(1, 3)), MARGIN)
+    # The outline's origin is the middle of the upper left pixel.
+    corner = np.array([0.5 - MARGIN, len(small) - 0.5 - MARGIN])
+    return tuple(tuple((loop + corner) * block for loop in part) for part in parts_of_mask(small[::-1]))
+
+
+def whole_image(rows: int, columns: int) -> Parts:
+    """The border of an image, in its pixels from the lower left corner."""
+    return ((np.array([(0.0, 0.0), (columns, 0.0), (columns, rows), (0.0, rows)]),),)
+
+
+def grayness(mask: Reals) -> float:
+    """Share of an image that is neither in nor out."""
+    return float(((mask > 0.25) & (mask < 0.75)).mean())

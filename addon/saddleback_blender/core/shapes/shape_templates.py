@@ -13,7 +13,7 @@ from ..results import Indices, Reals
 
 Parts = tuple[tuple[Reals, ...], ...]  # each an outline (n, 2) and its holes
 
-
+SIDES = 1  # among the materials of a shape with a picture: that of its sides
 FLAT_LIFT = 0.02  # of a shape's radius; twice what faces of bent copies may leave the surface by
 
 
@@ -39,6 +39,17 @@ class Solid:
 
 
 @dataclass(frozen=True)
+class Picture:
+    """An image whose pixels were the coordinates of a shape's outline."""
+
+    name: str
+    columns: int
+    rows: int
+    is_transparent: bool  # somewhere
+    color: tuple[float, ...]  # linear, the mean within the shape
+
+
+@dataclass(frozen=True)
 class ShapeTemplate:
     """One class of shapes, of circumradius 1 about the origin; x points along the field.
 
@@ -56,6 +67,23 @@ class ShapeTemplate:
     shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
     scale: float = 1.0
     materials: tuple[str, ...] = ()  # names of the solid's, where it has no one object that it was read from
+    picture: Picture | None = None  # what it shows, where it was made from an image
+
+    def uv_of(self, places: Reals) -> Reals:
+        """(n, 2) where in its picture, or else in the square about its circle, places (n, 2) of the shape are."""
+        if self.picture is None:
+            return 0.5 + 0.5 * places
+        pixels: Reals = places / self.scale - np.array(self.shift[:2])
+        return pixels / (self.picture.columns, self.picture.rows)
+
+
+def uv_of_classes(templates: Sequence[ShapeTemplate], classes: Indices, places: Reals) -> Reals:
+    """(n, 2) what `uv_of` says of places (n, 2) in shapes of the classes (n,); those of class -1 are in none."""
+    uv: Reals = 0.5 + 0.5 * places
+    for number, template in enumerate(templates):
+        rows = classes == number
+        uv[rows] = template.uv_of(places[rows])
+    return uv
 
 
 def joined(solids: Sequence[Solid], slots: Sequence[int]) -> Solid:
