@@ -35,12 +35,17 @@ def write_positions(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> Non
     mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
 
 
-def read_numbers(elements: Any, name: str, width: int = 1) -> NDArray[np.int32]:
-    """(n * width,) numbers of other elements, or counts, that n elements of a mesh have.
+def as_copied(values: NDArray[Any]) -> NDArray[Any]:
+    """The same memory in the kind of array that `foreach_get` and `foreach_set` copy in one go, not in a Python loop.
 
-    Blender's own are unsigned: only between arrays of the same kind it copies without a loop in Python. Under Windows
-    NumPy's uint32 is of another kind, a long.
+    For attributes that hold integers that is C's int. Under Windows NumPy's int32 is another kind, a long, and stays
+    one through `astype`, since both are equal to NumPy.
     """
+    return values.view(np.intc) if values.dtype == np.int32 else values
+
+
+def read_numbers(elements: Any, name: str, width: int = 1) -> NDArray[np.int32]:
+    """(n * width,) numbers of other elements, or counts, that n elements of a mesh have. Blender's own are unsigned."""
     numbers = np.empty(width * len(elements), np.int32)
     elements.foreach_get(name, numbers.view(np.uintc))
     return numbers
@@ -57,7 +62,7 @@ def read_corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     if attribute is None:
         return read_numbers(mesh.loops, "vertex_index")
     vertices = np.empty(len(mesh.loops), np.int32)
-    attribute.data.foreach_get("value", vertices)
+    attribute.data.foreach_get("value", as_copied(vertices))
     return vertices
 
 
@@ -67,7 +72,7 @@ def read_edge_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     if attribute is None:
         return read_numbers(mesh.edges, "vertices", 2).reshape(-1, 2)
     vertices = np.empty(2 * len(mesh.edges), np.int32)
-    attribute.data.foreach_get("value", vertices)
+    attribute.data.foreach_get("value", as_copied(vertices))
     return vertices.reshape(-1, 2)
 
 
@@ -330,7 +335,7 @@ def _stroke_places(stroke: Any) -> NDArray[np.float32]:
 
 def _drawing_strokes(drawing: Any) -> list[tuple[NDArray[np.float32], bool]]:
     offsets = np.empty(len(drawing.curve_offsets), np.int32)
-    drawing.curve_offsets.foreach_get("value", offsets)
+    drawing.curve_offsets.foreach_get("value", as_copied(offsets))
     if len(offsets) < 2:
         return []
     places = np.empty(3 * offsets[-1], np.float32)

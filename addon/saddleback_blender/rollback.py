@@ -15,6 +15,8 @@ from typing import Any
 import bpy
 import numpy as np
 
+from . import compat
+
 KINDS = ("objects", "meshes", "curves", "collections", "node_groups", "materials", "actions", "images")
 
 # Type of an attribute -> its elements' property, how many numbers that has, and the type that Blender copies in one go.
@@ -125,7 +127,7 @@ def remember_attribute(mesh: bpy.types.Mesh, name: str) -> None:
     elif attribute.data_type in ELEMENTS:
         element, width, dtype = ELEMENTS[attribute.data_type]
         values: np.ndarray[Any, Any] = np.empty(width * len(attribute.data), dtype)
-        attribute.data.foreach_get(element, values)
+        attribute.data.foreach_get(element, compat.as_copied(values))
         undo_with(partial(_set_attribute, mesh, name, attribute.data_type, attribute.domain, values))
 
 
@@ -149,5 +151,5 @@ def _set_attribute(mesh: bpy.types.Mesh, name: str, data_type: str, domain: str,
         attribute = None
     if attribute is None:
         attribute = mesh.attributes.new(name, data_type, domain)
-    attribute.data.foreach_set(ELEMENTS[data_type][0], values)
+    attribute.data.foreach_set(ELEMENTS[data_type][0], compat.as_copied(values))
     mesh.update_tag()

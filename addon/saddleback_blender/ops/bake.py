@@ -10,7 +10,7 @@ from functools import partial
 import bpy
 import numpy as np
 
-from .. import prefs
+from .. import compat, prefs
 from ..bridge.inputs.directions_in import read_directions
 from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
 from ..bridge.inputs.voronoi_in import read_uv
@@ -169,7 +169,7 @@ def _seen_cells(mesh: bpy.types.Mesh, name: str) -> Indices | None:
     if attribute is None or attribute.domain != "POINT" or attribute.data_type != "INT":
         return None
     numbers = np.empty(len(attribute.data), np.int32)  # signed: -1 is no cell
-    attribute.data.foreach_get("value", numbers)
+    attribute.data.foreach_get("value", compat.as_copied(numbers))
     return numbers
 
 

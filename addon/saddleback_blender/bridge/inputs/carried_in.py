@@ -79,7 +79,7 @@ def _attributes(source: bpy.types.Object, mesh: bpy.types.Mesh, anchors: Anchors
             continue
         element, width, dtype = ELEMENTS[kind]
         values: NDArray[Any] = np.empty(len(attribute.data) * width, dtype)
-        attribute.data.foreach_get(element, values)
+        attribute.data.foreach_get(element, compat.as_copied(values))
         values = values if width == 1 else values.reshape(-1, width)
         values = anchors.values(values, attribute.domain)
         if (values.dtype.kind, values.shape[1:]) in KINDS:

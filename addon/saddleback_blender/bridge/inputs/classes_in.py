@@ -135,7 +135,7 @@ def _column(mesh: bpy.types.Mesh, name: str, width: int) -> Reals:
     element = "vector" if width == 3 else "value"
     kind = np.int32 if attribute.data_type == "INT" else np.float32
     values = np.empty(width * len(attribute.data), kind)
-    attribute.data.foreach_get(element, values)
+    attribute.data.foreach_get(element, compat.as_copied(values))
     found: Reals = values.reshape(-1, width).astype(np.float64)
     return found
 

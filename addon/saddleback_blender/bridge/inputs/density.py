@@ -134,7 +134,7 @@ def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) ->
         )
     prop, dtype = NUMBER_TYPES[attribute.data_type]
     values: NDArray[np.generic] = np.zeros(len(attribute.data), dtype)
-    attribute.data.foreach_get(prop, values)
+    attribute.data.foreach_get(prop, compat.as_copied(values))
     return to_vertices(mesh, values, attribute.domain), label
 
 

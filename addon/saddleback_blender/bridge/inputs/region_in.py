@@ -54,7 +54,7 @@ def _by_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, attribute: bpy
     if attribute.domain == "FACE" and attribute.data_type in NUMBER_TYPES:
         element, dtype = NUMBER_TYPES[attribute.data_type]
         values: NDArray[np.generic] = np.zeros(len(attribute.data), dtype)
-        attribute.data.foreach_get(element, values)
+        attribute.data.foreach_get(element, compat.as_copied(values))
         return values.astype(np.float64) > 0.5
     if attribute.data_type not in ("FLOAT_COLOR", "BYTE_COLOR"):
         numbers, _ = read_attribute(source, mesh, attribute.name)

@@ -76,7 +76,7 @@ def _weights(item: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> Reals |
         )
     prop, dtype = NUMBER_TYPES[attribute.data_type]
     values: NDArray[np.generic] = np.zeros(len(attribute.data), dtype)
-    attribute.data.foreach_get(prop, values)
+    attribute.data.foreach_get(prop, compat.as_copied(values))
     return values.astype(np.float64)
 
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import rollback
+from ... import compat, rollback
 from ...blocks import is_editable
 from ...core.errors import BadInputError
 from ..tokens import SOURCE, layer_of, owns, source_token, token_of
@@ -60,7 +60,7 @@ def _holds(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -
     if len(attribute.data) != len(values):
         return False
     now = np.empty(values.size, dtype)
-    attribute.data.foreach_get(element, now)
+    attribute.data.foreach_get(element, compat.as_copied(now))
     return bool(np.array_equal(now, np.ascontiguousarray(values, dtype).ravel()))
 
 
@@ -83,7 +83,7 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
             raise BadInputError(
                 f"'{mesh.name}': the name '{name}' is taken or too long; choose another name for the attribute"
             )
-    attribute.data.foreach_set(element, np.ascontiguousarray(values, dtype).ravel())
+    attribute.data.foreach_set(element, compat.as_copied(np.ascontiguousarray(values, dtype).ravel()))
     return attribute
 
 

@@ -69,8 +69,8 @@ def write_cut(
     for material in materials or [None]:
         mesh.materials.append(material)
     firsts = add_materials(mesh, templates, settings.look, is_cut=True)
-    slots = np.where(cut.copy >= 0, firsts[cut.shape], corners.material[::3]).astype(np.int32)
-    mesh.polygons.foreach_set("material_index", slots)
+    slots = np.where(cut.copy >= 0, firsts[cut.shape], corners.material[::3])
+    compat.write_numbers(mesh.polygons, "material_index", slots)
     mesh.update()
     item = replace_object(context, source, CUT_ROLE, mesh, place)
     write_groups(item, carried)

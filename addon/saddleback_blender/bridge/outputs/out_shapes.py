@@ -230,7 +230,7 @@ def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate
     for material in _own_materials(template) or [material_of(look, nodes.shapes_material)]:
         mesh.materials.append(material)
     if template.materials and template.solid is not None:
-        mesh.polygons.foreach_set("material_index", template.solid.material)
+        compat.write_numbers(mesh.polygons, "material_index", template.solid.material)
     item = bpy.data.objects.new(template.name, mesh)
     item[NAME] = item.name
     mark(item, source, f"{TEMPLATE_ROLE} {number}")
