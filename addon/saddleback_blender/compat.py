@@ -261,6 +261,19 @@ def modifier_inputs(modifier: bpy.types.Modifier) -> dict[str, Any]:
     return {name: modifier_input(modifier, name) for name in names}
 
 
+def remove_modifier(item: bpy.types.Object, modifier: bpy.types.Modifier) -> None:
+    """Removes a Geometry Nodes modifier of ours.
+
+    Its inputs let go first of the data-blocks that they hold: with the modifier Blender 5.2 removes them from what
+    `user_map` tells and not from `users`, so that materials would never be purged before the file is opened anew.
+    """
+    if hasattr(modifier, "properties") and modifier.node_group is not None:  # 5.2 on
+        for name, value in modifier_inputs(modifier).items():
+            if isinstance(value, bpy.types.ID):
+                set_modifier_input(modifier, name, None)
+    item.modifiers.remove(modifier)
+
+
 def user_folder(name: str = "graphs") -> str:
     """Tells where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
     is_extension = __package__.startswith("bl_ext.")

@@ -142,7 +142,7 @@ def set_input(modifier: bpy.types.Modifier, name: str, value: Any) -> None:
 def remove_modifier(item: bpy.types.Object, modifier: bpy.types.Modifier) -> None:
     """Removes a modifier, and its group unless something else uses it."""
     name = modifier.node_group.name
-    item.modifiers.remove(modifier)
+    compat.remove_modifier(item, modifier)
     _remove_if_unused(name)
 
 
@@ -157,7 +157,7 @@ def set_sweep(item: bpy.types.Object, circle: bpy.types.Object, draws_circle: bo
 def add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> bpy.types.Modifier:
     """Adds our modifier before those of the artist, which expect its result."""
     modifier = item.modifiers.new(name, "NODES")
-    rollback.undo_with(partial(item.modifiers.remove, modifier))
+    rollback.undo_with(partial(compat.remove_modifier, item, modifier))
     modifier.node_group = group
     following = modifier_of(item, FOLLOW)  # which moves what the others make something of
     for first in (modifier, following):

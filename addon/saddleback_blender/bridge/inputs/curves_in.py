@@ -126,7 +126,7 @@ def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] 
     holder.data, holder.hide_viewport = plain, False
     tubes = modifier_of(holder, CURVE_TUBES)
     if tubes is not None:  # our own lines count as lines
-        holder.modifiers.remove(tubes)
+        compat.remove_modifier(holder, tubes)
     scene.objects.link(holder)
     try:
         shown = holder.evaluated_get(bpy.context.evaluated_depsgraph_get())

@@ -53,7 +53,7 @@ def keep_data(item: bpy.types.Object) -> None:
     make_ordinary(kept)
     following = modifier_of(kept, FOLLOW)
     if following is not None and kept.type == "CURVE":  # what its points stand on goes with the output
-        kept.modifiers.remove(following)
+        compat.remove_modifier(kept, following)
     kept.hide_viewport = kept.hide_render = True
     _kept.append(f"'{item.name}' was edited by hand: it stays as '{kept.name}', hidden")
 
