@@ -389,6 +389,18 @@ def curvature_and_features(case: meshes.Case) -> Iterable[object]:
     ]  # fmt: skip
 
 
+@asked(GOOD)
+def barriers(case: meshes.Case) -> Iterable[object]:
+    count = len(case.vertices)
+    curve = sb.SurfaceCurve(case.mesh, sb.trace(case.mesh, count // 2, 0.3, 0.7).surface)
+    barred = sb.add_barriers(case.mesh, edges=case.mesh.edges[::5], curves=[curve])
+    values = rounded(barred.values_to_barred(np.arange(count, dtype=float)))
+    return [
+        barred.mesh.vertices, barred.mesh.triangles, *all_of(barred, "vertex_origin face_origin"),
+        barred.least(values), barred.least_copies(values), *surface(barred.to_barred(np.arange(count))[0]),
+    ]  # fmt: skip
+
+
 @asked(GOOD, harmonic={"method": "harmonic"}, biharmonic={"method": "biharmonic"})
 def spread(case: meshes.Case, method: Any) -> Iterable[object]:
     count = min(4, len(case.vertices))

@@ -131,6 +131,10 @@ class Inputs:
         return sb.SurfaceCurve(self.mesh, self.graph.path(0, self.count // 2).surface)
 
     @functools.cached_property
+    def barred(self) -> sb.BarredMesh:
+        return sb.add_barriers(self.mesh, edges=self.mesh.edges[::7], curves=[self.curve])
+
+    @functools.cached_property
     def curve_points(self) -> Any:
         return self.curve.points.positions(self.mesh)
 
@@ -269,6 +273,12 @@ def calls(at: Inputs) -> dict[str, Call]:
         "SaddleVertexGraph.check": lambda: sb.SaddleVertexGraph.load(at.saved, at.mesh, mmap=True).check(),
         "SaddleVertexGraph.from_parts": lambda **more: sb.SaddleVertexGraph.from_parts(at.mesh, at.parts, **more),
         "find_arcs": lambda **more: sb.find_arcs(at.mesh, 1, 3, **more),
+        "BarredMesh.least": lambda: at.barred.least(at.barred.mesh.vertices[:, 0]),
+        "BarredMesh.least_copies": lambda: at.barred.least_copies(at.barred.mesh.vertices[:, 0]),
+        "BarredMesh.to_barred": lambda: at.barred.to_barred(at.points[:100]),
+        "BarredMesh.to_whole": lambda: at.barred.to_whole(np.arange(100, dtype=np.int32)),
+        "BarredMesh.values_to_barred": lambda: at.barred.values_to_barred(at.vertices[:, 0]),
+        "add_barriers": lambda: sb.add_barriers(at.mesh, edges=at.mesh.edges[::7], curves=[at.curve]),
         "arcs_across": lambda: sb.arcs_across(at.parts[0], 1),
         "unite_arcs": lambda **more: sb.unite_arcs(at.parts[0], at.across, **more),
         "SaddleVertexGraph.distances": lambda: at.graph.distances(at.few),

@@ -121,6 +121,7 @@ def calls() -> dict[str, Callable[[], object]]:
         "project": lambda: sb.project(mesh, vertices * 1.1).barycentric.sum(),
         "trace": lambda: sb.trace(mesh, 0, 0.3, 2.0).length,
         "feature_curves": lambda: len(sb.feature_curves(mesh, 0.1)),
+        "add_barriers": lambda: sb.add_barriers(mesh, edges=mesh.edges[::5], faces=[3]).mesh.area,
         "hausdorff_distance": lambda: sb.hausdorff_distance(mesh, disk, 1e-2).distance,
         "self_crossings": lambda: len(sb.self_crossings(vertices, triangles)),
         "from_mask": lambda: sb.Shape.from_mask(np.pad(np.ones((20, 20), bool), 4)).area,

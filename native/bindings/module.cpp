@@ -11,6 +11,7 @@
 namespace saddleback::bindings {
 
 void bind_bake_cells(py::module_& m);
+void bind_barriers(py::module_& m);
 void bind_cell_polygons(py::module_& m);
 void bind_charts(py::module_& m);
 void bind_check(py::module_& m);
@@ -160,6 +161,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_repair(m);
   bind_stepped_sweep(m);
   bind_surface(m);
+  bind_barriers(m);
   bind_exact(m);
   bind_graph(m);
   bind_graph_parts(m);

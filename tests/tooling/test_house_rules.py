@@ -141,7 +141,7 @@ ROOMS = ROOT / "native/src"
 # From the ground up: a subfolder includes itself and those before it.
 SUBFOLDERS = {
     "support": ["threads", "memory", "cuda", "simd"],
-    "mesh": ["tables", "read", "repair", "soup"],
+    "mesh": ["tables", "cutting", "read", "repair", "soup"],
     "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "cuda"],
     "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],
     "tessellation": ["bisectors", "log_map", "cells", "relaxation", "baking"],

@@ -8,6 +8,7 @@ from saddleback import _content, _conversions, _notebook  # noqa: F401  (they gi
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     BakedCells,
+    BarredMesh,
     BentCopies,
     Cancelled,
     CellCache,
@@ -64,6 +65,7 @@ from saddleback._saddleback import (
     Voronoi2d,
     VoronoiEdge,
     __version__,
+    add_barriers,
     arcs_across,
     bake_cells,
     border_edges,
@@ -117,6 +119,7 @@ from saddleback.viewers import plot, show
 
 __all__ = [
     "BakedCells",
+    "BarredMesh",
     "BentCopies",
     "Cancelled",
     "CellCache",
@@ -175,6 +178,7 @@ __all__ = [
     "Voronoi2d",
     "VoronoiEdge",
     "__version__",
+    "add_barriers",
     "arcs_across",
     "bake_cells",
     "blend_by_distance",

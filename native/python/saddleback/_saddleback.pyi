@@ -515,6 +515,177 @@ def feature_curves(
         InputError: an angle out of range; two vertices in `edges` that no edge joins.
     """
 
+@final
+class BarredMesh:
+    """A surface with barriers as a mesh of its own, and the way there and back; made by `add_barriers`."""
+    @property
+    def mesh(self) -> Mesh:
+        """Mesh: the surface with its barriers."""
+    @property
+    def whole(self) -> Mesh:
+        """Mesh: the surface without them."""
+    @property
+    def vertex_origin(self) -> _Indices:
+        """(W,) int32: vertex of `whole` that each vertex is a copy of, -1 for those on curves."""
+    @property
+    def vertex_points(self) -> SurfacePoints:
+        """SurfacePoints (W): where each vertex lies on `whole`."""
+    @property
+    def face_origin(self) -> _Indices:
+        """(U,) int32: face of `whole` that each face is a part of, ascending."""
+    def to_barred(self, points: _Points) -> tuple[SurfacePoints, _Indices]:
+        """Bring points of the whole mesh to the barred one.
+
+        Parameters
+        ----------
+        points : vertex indices or SurfacePoints
+            On the whole mesh.
+
+        Returns
+        -------
+        tuple of SurfacePoints (m) and (m,) int32
+            The points, those on a barrier once for each side, and which of the given points each is.
+
+        Raises
+        ------
+        InputError
+            A point off the mesh, or in nothing but faces that are left out.
+
+        Notes
+        -----
+        O(log F) a point.
+        """
+    def to_whole(self, points: _Points) -> SurfacePoints:
+        """Bring points of the barred mesh, as those of a path, to the whole one.
+
+        Parameters
+        ----------
+        points : vertex indices or SurfacePoints
+            On `mesh`.
+
+        Returns
+        -------
+        SurfacePoints
+
+        Raises
+        ------
+        InputError
+            A point off the mesh.
+
+        Notes
+        -----
+        O(1) a point.
+        """
+    def values_to_barred(self, values: ArrayLike) -> _Floats:
+        """Bring values of the whole mesh's vertices, as a density, to those of the barred one.
+
+        Parameters
+        ----------
+        values : array_like of shape (V,)
+
+        Returns
+        -------
+        (W,) float64
+            Linear over each face where a curve has made a vertex.
+
+        Raises
+        ------
+        InputError
+            A wrong number of values.
+
+        Notes
+        -----
+        O(W).
+        """
+    def least(self, values: ArrayLike) -> _Floats:
+        """Bring values of the barred mesh's vertices, as distances, to those of the whole one.
+
+        Parameters
+        ----------
+        values : array_like of shape (W,)
+
+        Returns
+        -------
+        (V,) float64
+            The least of a vertex's copies on all sides of its barriers; infinity where all of its faces are left out.
+
+        Raises
+        ------
+        InputError
+            A wrong number of values.
+
+        Notes
+        -----
+        O(V + W).
+        """
+    def least_copies(self, values: ArrayLike) -> _Indices:
+        """For each vertex of the whole mesh its copy of the least value.
+
+        Brings labels back: ``cells.vertex_cell[barred.least_copies(cells.vertex_distance)]``.
+
+        Parameters
+        ----------
+        values : array_like of shape (W,)
+
+        Returns
+        -------
+        (V,) int32
+            Vertices of `mesh`, the smallest of equal ones; -1 where all of a vertex's faces are left out.
+
+        Raises
+        ------
+        InputError
+            A wrong number of values.
+
+        Notes
+        -----
+        O(V + W).
+        """
+
+def add_barriers(
+    mesh: Mesh,
+    *,
+    edges: ArrayLike | None = None,
+    curves: Sequence[SurfaceCurve] | None = None,
+    faces: ArrayLike | None = None,
+    job: Job | None = None,
+) -> BarredMesh:
+    """Part a surface along lines that no path may cross, and leave faces out.
+
+    What comes back holds a mesh on which everything works unchanged: distances, graphs, paths, cells, shapes. On both sides
+    of a barrier it has vertices of their own; where a barrier ends inside the surface its sides meet, and paths go around
+    the end. What a barrier encloses is a part of its own (`mesh.components`): no distance from outside reaches it, which is
+    told as infinity.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    edges : array_like of shape (n, 2), optional
+        Barriers along edges of the mesh, each by its two vertices.
+    curves : sequence of SurfaceCurve, optional
+        Barriers across faces. They may cross and touch each other, edges and vertices; what is nearer than 1e-9 of a face
+        meets. Faces that they cross become several.
+    faces : array_like of (F,) bool or of face indices, optional
+        The faces that are left out.
+    job : Job, optional
+        Watched for progress and cancellation.
+
+    Returns
+    -------
+    BarredMesh
+
+    Raises
+    ------
+    InputError
+        Two vertices that no edge joins, a curve of another mesh, a curve that crosses or touches itself (the message tells
+        where), faces out of range, all faces left out.
+
+    Notes
+    -----
+    O(V + F), and O(p^2) for p pieces of curves in one face. A vertex that stays one comes in the old order; second and
+    further copies follow. Constrained triangulations after [sloan1993].
+    """
+
 _Sources: TypeAlias = _Points | SurfaceCurve | Sequence[SurfaceCurve]
 
 class GeodesicPath:

@@ -23,15 +23,6 @@ Vec3 normal(const Mesh& mesh, Index face) {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// The half-edge that speaks for the edge between two vertices, k_none where there is none.
-Index find_edge(const Mesh& mesh, Index a, Index b) {
-  for (const Index h : outgoing(mesh, a)) {
-    if (mesh.to(h) == b) return h;
-    if (const Index last = Mesh::prev(h); mesh.from(last) == b) return last;
-  }
-  return k_none;
-}
-
 /// Knows which edges are features, and how they meet.
 class FeatureGraph {
  public:
@@ -44,7 +35,7 @@ class FeatureGraph {
                                                          normal(mesh, Mesh::face_of(twin))) > options.angle;
       if (wanted) mark(h);
     }
-    for (std::size_t i = 0; i < options.edges.size(); ++i) mark_given(options.edges[i], i);
+    for (std::size_t i = 0; i < options.edges.size(); ++i) mark(given_edge(mesh, options.edges[i], i));
     link();
   }
 
@@ -73,19 +64,6 @@ class FeatureGraph {
   void mark(Index h) {
     is_feature_[h] = 1;
     if (mesh_.twin(h) != k_none) is_feature_[mesh_.twin(h)] = 1;
-  }
-
-  void mark_given(const std::array<Index, 2>& edge, std::size_t number) {
-    for (const Index vertex : edge) {
-      if (vertex < 0 || vertex >= mesh_.vertex_count())
-        throw InputError(message("edges: wanted vertices from 0 to ", mesh_.vertex_count() - 1, ", got ", vertex,
-                                 " in edge ", number));
-    }
-    const Index h = find_edge(mesh_, edge[0], edge[1]);
-    if (h == k_none)
-      throw InputError(
-          message("edges: no edge of the mesh joins vertices ", edge[0], " and ", edge[1], " of edge ", number));
-    mark(h);
   }
 
   /// Neighbors along feature edges, by vertex.

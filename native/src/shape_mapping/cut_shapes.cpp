@@ -7,8 +7,8 @@
 
 #include "saddleback/error.h"
 
+#include "mesh/cutting/constrained_triangulation.h"
 #include "predicates/predicates.h"
-#include "shape_mapping/constrained_triangulation.h"
 
 namespace saddleback {
 namespace {

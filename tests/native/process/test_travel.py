@@ -47,6 +47,7 @@ def made() -> dict[str, Any]:
         mesh,
         report,
         sb.sample(mesh, 7),
+        sb.add_barriers(mesh, edges=mesh.edges[::5], curves=[curve], faces=[3]),
         curve,
         graph,
         graph.path(0, 40),

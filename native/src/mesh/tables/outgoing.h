@@ -1,6 +1,7 @@
 #pragma once
 // The half-edges out of a vertex, for range-based loops.
 
+#include <array>
 #include <iterator>
 
 #include "saddleback/mesh/mesh.h"
@@ -37,5 +38,9 @@ class Outgoing {
 };
 
 inline Outgoing outgoing(const Mesh& mesh, Index vertex) { return {mesh, vertex}; }
+
+/// A half-edge of the edge number `number` that a caller gives by its vertices. \throw InputError naming it where these
+/// are out of range or no edge joins them.
+Index given_edge(const Mesh& mesh, const std::array<Index, 2>& edge, std::size_t number);
 
 }  // namespace saddleback

@@ -1,6 +1,6 @@
 // Points are put in one by one, then pieces are made edges by exchanging the triangles that they cross [sloan1993].
 
-#include "shape_mapping/constrained_triangulation.h"
+#include "mesh/cutting/constrained_triangulation.h"
 
 #include "predicates/predicates.h"
 

@@ -1,0 +1,246 @@
+#include "mesh/cutting/barrier_cuts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "saddleback/error.h"
+
+#include "mesh/tables/outgoing.h"
+
+namespace saddleback {
+namespace {
+
+// In barycentric coordinates: what is nearer meets. Far above the rounding of points where two curves cross, so that no
+// slit is left where one ends on another, and far below what anybody draws.
+constexpr double k_meets = 1e-9;
+
+double area_between(const Vec2& u, const Vec2& v) { return u.x() * v.y() - u.y() * v.x(); }
+Vec3 from_weights(const Vec2& w) { return {1 - w.x() - w.y(), w.x(), w.y()}; }
+
+}  // namespace
+
+BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
+                         std::span<const SurfaceCurve* const> curves)
+    : mesh_(mesh) {
+  points_.reserve(static_cast<std::size_t>(mesh.vertex_count()));
+  for (Index v = 0; v < mesh.vertex_count(); ++v) points_.push_back(at_vertex(mesh, v));
+  for (std::size_t i = 0; i < curves.size(); ++i) add_curve(static_cast<Index>(i), *curves[i]);
+  std::map<Index, std::vector<Index>> by_face;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) by_face[pieces_[i].face].push_back(static_cast<Index>(i));
+  for (const auto& [face, pieces] : by_face) cross(pieces);
+  // Only now are all nodes known that a barrier may pass.
+  follow_curves(curves);
+  for (std::size_t i = 0; i < edges.size(); ++i) add_given_edge(given_edge(mesh, edges[i], i));
+  halve_lonely_edges();
+  for (const Edge& edge : edges_) edges_in_[edge.face].push_back(edge);
+}
+
+void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
+  std::vector<Index> chain;
+  for (std::size_t i = 0; i < pieces_.size();) {
+    const Index curve = pieces_[i].curve, first = pieces_[i].from;
+    std::unordered_set<Index> passed{first};
+    for (; i < pieces_.size() && pieces_[i].curve == curve; ++i) {
+      const bool is_last = i + 1 == pieces_.size() || pieces_[i + 1].curve != curve;
+      follow(pieces_[i], chain);
+      for (std::size_t k = 1; k < chain.size(); ++k) {
+        const bool closes = is_last && k + 1 == chain.size() && curves[curve]->closed() && chain[k] == first;
+        if (!passed.insert(chain[k]).second && !closes) refuse(curve, chain[k]);
+        add_edge({pieces_[i].face, chain[k - 1], chain[k]});
+      }
+    }
+  }
+}
+
+void BarrierCuts::add_edge(const Edge& edge) {
+  if (barriers_.insert(edge_key(edge.from, edge.to)).second) edges_.push_back(edge);
+}
+
+/// Adds the parts between all nodes along the edge.
+void BarrierCuts::add_given_edge(Index halfedge) {
+  const Index h = speaker(halfedge), face = Mesh::face_of(h);
+  Index last = mesh_.from(h);
+  if (const auto found = on_edge_.find(h); found != on_edge_.end())
+    for (const OnEdge& on : found->second) add_edge({face, std::exchange(last, on.node), on.node});
+  add_edge({face, last, mesh_.to(h)});
+}
+
+/// Halves those that end at inner vertices alone, about which the surface hangs together: nothing would part it.
+void BarrierCuts::halve_lonely_edges() {
+  std::unordered_map<Index, Index> ends;
+  for (const Edge& edge : edges_) ++ends[edge.from], ++ends[edge.to];
+  const auto is_loose = [&](Index node) {
+    return ends[node] == 1 && (node >= mesh_.vertex_count() || !mesh_.is_boundary(node));
+  };
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const auto [face, from, to] = edges_[i];
+    if (!is_loose(from) || !is_loose(to)) continue;
+    const Index middle =
+        node_at(face, (*barycentric_in(mesh_, points_[from], face) + *barycentric_in(mesh_, points_[to], face)) / 2);
+    if (middle == from || middle == to) continue;  // shorter than what meets
+    barriers_.erase(edge_key(from, to));
+    barriers_.insert({edge_key(from, middle), edge_key(middle, to)});
+    edges_[i].to = middle;
+    edges_.push_back({face, middle, to});
+    ends[middle] = 2;
+  }
+}
+
+void BarrierCuts::add_curve(Index curve, const SurfaceCurve& line) {
+  Index last = k_none;
+  SurfacePoint end;
+  const auto join = [&](const SurfacePoint& begin, Index node) {
+    // A point that the curve has off an edge by rounding counts as on it in the face beyond alone: the gap is closed.
+    if (last == k_none || last == node) return;
+    if (const Index face = shared_face(mesh_, end, begin, k_barycentric_tolerance); face != k_none)
+      add_piece(curve, face, last, node);
+  };
+  for (const CurveSegment& segment : line.segments()) {
+    const Index from = node_at(segment.face, segment.begin), to = node_at(segment.face, segment.end);
+    join({segment.face, segment.begin}, from);
+    add_piece(curve, segment.face, from, to);
+    last = to;
+    end = {segment.face, segment.end};
+  }
+  if (line.closed()) {
+    const CurveSegment& first = line.segments().front();
+    join({first.face, first.begin}, node_at(first.face, first.begin));
+  }
+}
+
+void BarrierCuts::add_piece(Index curve, Index face, Index from, Index to) {
+  if (from != to) pieces_.push_back({face, curve, from, to});
+}
+
+Index BarrierCuts::speaker(Index h) const {
+  const Index twin = mesh_.twin(h);
+  return twin == k_none ? h : std::min(h, twin);
+}
+
+Index BarrierCuts::new_node(Index face, const Vec3& barycentric) {
+  points_.push_back({face, barycentric});
+  return static_cast<Index>(points_.size()) - 1;
+}
+
+Index BarrierCuts::node_at(Index face, const Vec3& barycentric) {
+  for (int i = 0; i < 3; ++i)
+    if (barycentric[i] >= 1 - k_meets) return mesh_.from(3 * face + i);
+  for (int i = 0; i < 3; ++i) {
+    const double here = barycentric[i], next = barycentric[(i + 1) % 3];
+    if (barycentric[(i + 2) % 3] <= k_meets) return node_on(3 * face + i, next / (here + next));
+  }
+  std::vector<Index>& nodes = inside_[face];
+  for (const Index node : nodes)
+    if ((points_[node].barycentric - barycentric).cwiseAbs().maxCoeff() <= k_meets) return node;
+  nodes.push_back(new_node(face, barycentric));
+  return nodes.back();
+}
+
+Index BarrierCuts::node_on(Index halfedge, double along) {
+  if (along <= k_meets) return mesh_.from(halfedge);
+  if (along >= 1 - k_meets) return mesh_.to(halfedge);
+  const Index h = speaker(halfedge);
+  if (h != halfedge) along = 1 - along;
+  std::vector<OnEdge>& nodes = on_edge_[h];
+  const auto place = std::ranges::lower_bound(nodes, along - k_meets, {}, &OnEdge::along);
+  if (place != nodes.end() && place->along <= along + k_meets) return place->node;
+  Vec3 barycentric = Vec3::Zero();
+  barycentric[h % 3] = 1 - along;
+  barycentric[(h + 1) % 3] = along;
+  const Index node = new_node(Mesh::face_of(h), barycentric);
+  nodes.insert(place, {along, node});
+  return node;
+}
+
+/// Weights of the face's corners 1 and 2, exactly on its edge for a node on one.
+Vec2 BarrierCuts::weights(Index face, Index node) const {
+  const Vec3 barycentric = *barycentric_in(mesh_, points_[node], face);
+  // These two are taken so that their sum is exactly 1: the larger is rounded, and what is left of 1 then is no more.
+  if (barycentric[0] == 0) {
+    const double second = 1 - barycentric[1];
+    return {1 - second, second};
+  }
+  return {barycentric[1], barycentric[2]};
+}
+
+bool BarrierCuts::is_cut(Index face) const {
+  if (points_.size() == static_cast<std::size_t>(mesh_.vertex_count())) return false;
+  if (inside_.contains(face)) return true;
+  for (Index h = 3 * face; h < 3 * face + 3; ++h)
+    if (on_edge_.contains(speaker(h))) return true;
+  return false;
+}
+
+std::vector<Index> BarrierCuts::nodes_of(Index face) const {
+  std::vector<Index> nodes(mesh_.triangles()[face].begin(), mesh_.triangles()[face].end());
+  for (Index h = 3 * face; h < 3 * face + 3; ++h)
+    if (const auto found = on_edge_.find(speaker(h)); found != on_edge_.end())
+      for (const OnEdge& on : found->second) nodes.push_back(on.node);
+  if (const auto found = inside_.find(face); found != inside_.end())
+    nodes.insert(nodes.end(), found->second.begin(), found->second.end());
+  return nodes;
+}
+
+/// Makes nodes where pieces of one face cross.
+void BarrierCuts::cross(std::span<const Index> pieces) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece one = pieces_[pieces[i]];
+    const Vec2 a = weights(one.face, one.from), along = weights(one.face, one.to) - a;
+    for (std::size_t j = 0; j < i; ++j) {
+      const Piece other = pieces_[pieces[j]];
+      const Vec2 c = weights(one.face, other.from), d = weights(one.face, other.to);
+      const double from = area_between(along, c - a), to = area_between(along, d - a);
+      if ((from > 0) == (to > 0)) continue;
+      const Vec2 crossing = c + from / (from - to) * (d - c);
+      const double share = (crossing - a).dot(along) / along.squaredNorm();
+      if (share > 0 && share < 1) node_at(one.face, normalized_barycentric(from_weights(crossing)));
+    }
+  }
+}
+
+/// The nodes that a piece passes, with its ends.
+void BarrierCuts::follow(const Piece& piece, std::vector<Index>& chain) const {
+  const Vec2 a = weights(piece.face, piece.from), along = weights(piece.face, piece.to) - a;
+  const double length = along.norm();
+  std::vector<OnEdge> passed;
+  for (const Index node : nodes_of(piece.face)) {
+    if (node == piece.from || node == piece.to) continue;
+    const Vec2 way = weights(piece.face, node) - a;
+    const double share = way.dot(along) / (length * length);
+    if (share > 0 && share < 1 && std::abs(area_between(along, way)) <= k_meets * length)
+      passed.push_back({share, node});
+  }
+  std::ranges::sort(passed, {}, &OnEdge::along);
+  chain.assign(1, piece.from);
+  for (const OnEdge& node : passed) chain.push_back(node.node);
+  chain.push_back(piece.to);
+}
+
+void BarrierCuts::refuse(Index curve, Index node) const {
+  const Vec3 place = position(mesh_, points_[node]);
+  throw InputError(message("curves: curve ", curve, " crosses or touches itself at (", place.x(), ", ", place.y(), ", ",
+                           place.z(), ") in face ", points_[node].face, "; give it as two curves"));
+}
+
+void BarrierCuts::cut(Index face, std::vector<Triangle>& triangles) {
+  const FaceChart chart(mesh_, face);
+  flat_.begin({chart.corner[0], chart.corner[1], chart.corner[2]});
+  const std::vector<Index> nodes = nodes_of(face);
+  std::unordered_map<Index, Index> number;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    number[nodes[i]] = i < 3 ? static_cast<Index>(i) : flat_.add(weights(face, nodes[i]));
+  if (const auto found = edges_in_.find(face); found != edges_in_.end()) {
+    for (const Edge& edge : found->second)
+      if (!flat_.connect(number[edge.from], number[edge.to]))
+        throw InputError(message("curves: they cross at too small an angle in face ", face, "; move one of them"));
+  }
+  flat_.improve();
+  for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
+    const Triangle flat = flat_.triangle(t);
+    triangles.push_back({nodes[flat[0]], nodes[flat[1]], nodes[flat[2]]});
+  }
+}
+
+}  // namespace saddleback

@@ -1,0 +1,80 @@
+#pragma once
+// Faces cut along barriers: where curves meet edges, vertices and each other, and the triangles between.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "saddleback/mesh/surface_curve.h"
+
+#include "mesh/cutting/constrained_triangulation.h"
+
+namespace saddleback {
+
+/// Nodes are the vertices of the mesh and, numbered after them, the points at which curves bend, meet or cross edges.
+/// Two faces that are parted along an edge must differ in one of its ends: an edge that is a barrier for itself has a
+/// node in its middle.
+class BarrierCuts {
+ public:
+  /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where.
+  BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
+              std::span<const SurfaceCurve* const> curves);
+
+  /// All nodes on the mesh.
+  const SurfacePoints& points() const { return points_; }
+  /// Tells whether the edge between two nodes is a barrier.
+  bool is_barrier(Index a, Index b) const { return barriers_.contains(edge_key(a, b)); }
+  /// Tells whether there are nodes in or on the face beside its corners.
+  bool is_cut(Index face) const;
+  /// The triangles that the face has become, as nodes. \throw InputError where curves meet too narrowly.
+  void cut(Index face, std::vector<Triangle>& triangles);
+
+ private:
+  struct Piece {
+    Index face, curve, from, to;
+  };
+  struct OnEdge {
+    double along;  ///< share of the way along the half-edge that speaks for the edge
+    Index node;
+  };
+
+  /// A barrier between two nodes that no other lies between.
+  struct Edge {
+    Index face, from, to;
+  };
+
+  static std::uint64_t edge_key(Index a, Index b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
+  }
+  void add_curve(Index curve, const SurfaceCurve& line);
+  void add_piece(Index curve, Index face, Index from, Index to);
+  void add_given_edge(Index halfedge);
+  void add_edge(const Edge& edge);
+  Index node_at(Index face, const Vec3& barycentric);
+  Index node_on(Index halfedge, double along);
+  Index new_node(Index face, const Vec3& barycentric);
+  Index speaker(Index h) const;
+  Vec2 weights(Index face, Index node) const;
+  std::vector<Index> nodes_of(Index face) const;
+  void cross(std::span<const Index> pieces);
+  void follow_curves(std::span<const SurfaceCurve* const> curves);
+  void follow(const Piece& piece, std::vector<Index>& chain) const;
+  void halve_lonely_edges();
+  [[noreturn]] void refuse(Index curve, Index node) const;
+
+  const Mesh& mesh_;
+  SurfacePoints points_;
+  std::vector<Piece> pieces_;                               ///< in the order along the curves
+  std::unordered_map<Index, std::vector<Index>> inside_;    ///< nodes within a face
+  std::unordered_map<Index, std::vector<OnEdge>> on_edge_;  ///< by the half-edge that speaks for it, ascending
+  std::vector<Edge> edges_;                                 ///< that are barriers, each once
+  std::unordered_set<std::uint64_t> barriers_;              ///< keys of these
+  std::unordered_map<Index, std::vector<Edge>> edges_in_;   ///< of these, by face
+  ConstrainedTriangulation flat_;
+};
+
+}  // namespace saddleback
