@@ -222,6 +222,61 @@ def circles_that_grow_together(sites: Floats, rng: Random) -> None:
             assert_is_beach(curve, sites, np.zeros(len(sites)), center, reached, size)
 
 
+def cut_by(polygon: list[Floats], site: Floats, other: Floats) -> list[Floats]:
+    """What of a convex polygon is nearer to a site than to another."""
+    across, middle = other - site, (site + other) / 2
+    side = [float(np.dot(point - middle, across)) for point in polygon]
+    kept: list[Floats] = []
+    for a, b, u, v in zip(polygon, polygon[1:] + polygon[:1], side, side[1:] + side[:1], strict=True):
+        if u <= 0:
+            kept.append(a)
+        if (u < 0 < v) or (v < 0 < u):
+            kept.append(a + (b - a) * (u / (u - v)))
+    return kept
+
+
+@guards("SweepCircles", on="plane")
+def circles_stop_where_their_part_of_the_domain_ends(sites: Floats, rng: Random) -> None:
+    """A circle stops when it has passed the last corner of what lies in a box of the cells of the sites nearest to it,
+    cut out of the box by all bisectors; until then it tells the same events as without a domain.
+    """
+    sites = some_of(sites, rng, 8)
+    if not is_plain(sites) or len(np.unique(sites, axis=0)) < len(sites):
+        return
+    sites = sites - sites.mean(axis=0)
+    size = float(np.ptp(sites, axis=0).max()) or 1.0
+    centers = np.array([random_center(sites, rng) for _ in range(int(rng.integers(1, 4)))])
+    low = size * rng.normal(size=2)
+    high = low + size * rng.uniform(0.2, 3, 2)
+    box = [np.array(corner) for corner in (low, (high[0], low[1]), high, (low[0], high[1]))]
+    away = np.linalg.norm(sites[:, None] - centers, axis=2)
+    if len(centers) > 1 and np.diff(np.sort(away, axis=1)[:, :2]).min() < 1e-9 * size:
+        return
+    stops = np.full(len(centers), -np.inf)
+    for site, circle in zip(sites, away.argmin(axis=1).tolist(), strict=True):
+        cell = box
+        for other in sites:
+            cell = cut_by(cell, site, other) if cell and (other != site).any() else cell
+        for corner in cell:
+            stops[circle] = max(stops[circle], np.hypot(*(corner - centers[circle])) + np.hypot(*(corner - site)))
+    sweeps, free = sb.SweepCircles(sites, centers, domain=box), sb.SweepCircles(sites, centers)
+    told = {circle: [] for circle in range(len(centers))}
+    while step := sweeps.step():
+        told[step[0]].append((step[1].kind, step[1].radius, *step[1].sites.tolist()))
+    every = {circle: [] for circle in range(len(centers))}
+    while step := free.step():
+        every[step[0]].append((step[1].kind, step[1].radius, *step[1].sites.tolist()))
+    sweeps.grow(100 * float(max(away.max(), np.abs(box).max(), 1)))
+    reached = sweeps.radii
+    for circle, stop in enumerate(stops.tolist()):
+        assert (
+            (reached[circle] == -np.inf) if stop == -np.inf else abs(reached[circle] - stop) <= 1e-6 * max(size, stop)
+        )
+        shorter = min(len(told[circle]), len(every[circle]))
+        assert told[circle][:shorter] == every[circle][:shorter]
+        assert all(event[1] <= stop + 1e-6 * size for event in told[circle])
+
+
 @guards("Voronoi2d.cell_vertices", "Voronoi2d.cell_edges", "Voronoi2d", on="plane")
 def rings_of_cells(sites: Floats, rng: Random) -> None:
     """Around a cell go the edges that name its site, each once, from vertex to vertex, counter-clockwise."""

@@ -19,11 +19,14 @@ SteppedSweep make(const py::object& sites, const py::object& center, const py::o
   return without_gil([&] { return SteppedSweep(points, {middle.values[0], middle.values[1]}, radii, token); });
 }
 
-SweepCircles make_circles(const py::object& sites, const py::object& centers, const py::object& weights) {
+SweepCircles make_circles(const py::object& sites, const py::object& centers, const py::object& weights,
+                          const py::object& domain) {
   const std::vector<Vec2> points = as_points_2d(sites, "sites"), middles = as_points_2d(centers, "centers");
   const std::vector<double> radii = as_weights(weights, points.size());
+  std::optional<PlanarDomain> within;
+  if (!domain.is_none()) within = as_domain(domain, "domain");
   const JobIn token(py::none{});
-  return without_gil([&] { return SweepCircles(points, middles, radii, token); });
+  return without_gil([&] { return SweepCircles(points, middles, radii, within ? &*within : nullptr, token); });
 }
 
 Index as_circle(const SweepCircles& sweep, const py::object& circle) {
@@ -89,8 +92,9 @@ O(n log n) to make and for the first step, O(1) expected for another.)";
 
 constexpr const char* k_circles_doc = R"(Sweep circles that grow together, to be looked at.
 
-Each grows about its own center until it has closed the cells of the sites nearest to it; one with an open cell among
-these goes on to the last vertex.
+Each grows about its own center until it has found the cells of the sites nearest to it, as much of them as lies in the
+domain. Without a domain one with an open cell among these goes on to the last vertex; with one each circle does without
+the events that the others tell.
 
 Parameters
 ----------
@@ -98,15 +102,18 @@ sites : (n, 2) float array
 centers : (m, 2) float array
 weights : (n,) float array, optional
     Radii of the sites.
+domain : (m, 2) float array or list of such, optional
+    Corners of a polygon and of its holes: what of the plane is wanted.
 
 Raises
 ------
 InputError
-    No center, a coordinate that is not finite; what `voronoi_2d` refuses.
+    No center, a coordinate that is not finite; what `voronoi_2d` refuses, of a domain, too.
 
 Notes
 -----
-O(m n log n) to make, O(m) for a step.)";
+O(m n log n) to make, O(m) for a step. Circles stop by theorem 3.3 of X. Ying: Parallel geodesic computing,
+chapter 3, exactly: where the beach curve is around the cells.)";
 
 constexpr const char* k_edges_doc =
     "(E, 2, 2) float64 ends, (E, 2) int32 sites, (E,) bool finished: the others grow at their end, or at both. After "
@@ -168,7 +175,8 @@ void bind_stepped_sweep(py::module_& m) {
       .def("__repr__",
            [](const SteppedSweep& s) { return message("<saddleback.SweepCircle, radius ", s.radius(), ">"); });
   py::class_<SweepCircles>(m, "SweepCircles", py::module_local(), k_circles_doc)
-      .def(py::init(&make_circles), py::arg("sites"), py::arg("centers"), py::arg("weights") = py::none())
+      .def(py::init(&make_circles), py::arg("sites"), py::arg("centers"), py::arg("weights") = py::none(),
+           py::kw_only(), py::arg("domain") = py::none())
       .def(
           "step",
           [](SweepCircles& s) -> py::object {

@@ -2901,8 +2901,9 @@ class SweepCircle:
 class SweepCircles:
     """Sweep circles that grow together, to be looked at.
 
-    Each grows about its own center until it has closed the cells of the sites nearest to it; one with an open cell among
-    these goes on to the last vertex.
+    Each grows about its own center until it has found the cells of the sites nearest to it, as much of them as lies in the
+    domain. Without a domain one with an open cell among these goes on to the last vertex; with one each circle does without
+    the events that the others tell.
 
     Parameters
     ----------
@@ -2910,17 +2911,22 @@ class SweepCircles:
     centers : (m, 2) float array
     weights : (n,) float array, optional
         Radii of the sites.
+    domain : (m, 2) float array or list of such, optional
+        Corners of a polygon and of its holes: what of the plane is wanted.
 
     Raises
     ------
     InputError
-        No center, a coordinate that is not finite; what `voronoi_2d` refuses.
+        No center, a coordinate that is not finite; what `voronoi_2d` refuses, of a domain, too.
 
     Notes
     -----
-    O(m n log n) to make, O(m) for a step.
+    O(m n log n) to make, O(m) for a step. Circles stop by theorem 3.3 of X. Ying: Parallel geodesic computing,
+    chapter 3, exactly: where the beach curve is around the cells.
     """
-    def __init__(self, sites: ArrayLike, centers: ArrayLike, weights: ArrayLike | None = None) -> None: ...
+    def __init__(
+        self, sites: ArrayLike, centers: ArrayLike, weights: ArrayLike | None = None, *, domain: _Domain | None = None
+    ) -> None: ...
     def step(self) -> tuple[int, SweepEvent] | None:
         """Go on to the next event of any circle: (circle, event); None after the last."""
     def grow(self, radius: SupportsFloat) -> None:

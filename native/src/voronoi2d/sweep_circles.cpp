@@ -29,6 +29,9 @@ struct SweepCircles::State {
   double radius = 0;
 
   void add_circles(const JobStage& stage);
+  std::vector<Index> nearest_circles(const JobStage& stage) const;
+  void stop_at_vertices(const std::vector<Index>& nearest);
+  void stop_within(const PlanarDomain& domain, const std::vector<Index>& nearest, const JobStage& stage);
   Index soonest() const;
   double radius_of(const Circle& circle) const { return std::min(radius, circle.stop); }
 };
@@ -36,16 +39,44 @@ struct SweepCircles::State {
 void SweepCircles::State::add_circles(const JobStage& stage) {
   for (const Vec2& center : centers)
     circles.push_back({DiagramSweep(diagram, center, stage), -std::numeric_limits<double>::infinity()});
+}
+
+/// (n) the circle whose center is nearest to each site that has a cell.
+std::vector<Index> SweepCircles::State::nearest_circles(const JobStage& stage) const {
+  std::vector<Index> nearest(diagram.sites.size(), k_none);
   for (const Index site : diagram.cell_sites) {
     stage.check();
     const auto distance = [&](const Vec2& center) { return (center - diagram.sites[site]).squaredNorm(); };
-    const auto nearest = std::min_element(centers.begin(), centers.end(),
-                                          [&](const Vec2& a, const Vec2& b) { return distance(a) < distance(b); });
-    Circle& circle = circles[nearest - centers.begin()];
+    const auto found = std::min_element(centers.begin(), centers.end(),
+                                        [&](const Vec2& a, const Vec2& b) { return distance(a) < distance(b); });
+    nearest[site] = static_cast<Index>(found - centers.begin());
+  }
+  return nearest;
+}
+
+void SweepCircles::State::stop_at_vertices(const std::vector<Index>& nearest) {
+  for (const Index site : diagram.cell_sites) {
+    Circle& circle = circles[nearest[site]];
     circle.stop = std::max(circle.stop, circle.sweep.last_radius(site));
   }
-  for (const Circle& circle : circles)
-    if (!circle.is_done()) radius = std::min(radius, circle.next_radius());
+}
+
+/// The beach curve passes a point of a site's cell at the sum of its distances to center and site. That is convex:
+/// where the curve has passed the corners of what lies of a cell in the domain, it has passed all of it.
+void SweepCircles::State::stop_within(const PlanarDomain& domain, const std::vector<Index>& nearest,
+                                      const JobStage& stage) {
+  constexpr double k_rounding = 1e-12;  // the circle's event in a corner is told by other operations
+  const ClippedCells cells = diagram.clip(domain, {}, stage);
+  for (std::size_t loop = 0; loop < cells.loop_sites.size(); ++loop) {
+    const Index site = cells.loop_sites[loop];
+    const Vec2& center = centers[nearest[site]];
+    const double weight = diagram.weights.empty() ? 0 : diagram.weights[site];
+    Circle& circle = circles[nearest[site]];
+    for (Index i = cells.loop_offsets[loop]; i < cells.loop_offsets[loop + 1]; ++i) {
+      const double sum = (cells.points[i] - center).norm() + (cells.points[i] - diagram.sites[site]).norm();
+      circle.stop = std::max(circle.stop, sum * (1 + k_rounding) - weight);
+    }
+  }
 }
 
 /// The circle with the next event, or k_none.
@@ -58,7 +89,7 @@ Index SweepCircles::State::soonest() const {
 }
 
 SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights,
-                           Job* job)
+                           const PlanarDomain* domain, Job* job)
     : state_(std::make_unique<State>()) {
   if (centers.empty()) throw InputError("centers: wanted one or more, got none");
   for (std::size_t k = 0; k < centers.size(); ++k)
@@ -67,7 +98,15 @@ SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> ce
           message("centers: center ", k, " is (", centers[k].x(), ", ", centers[k].y(), "), wanted finite numbers"));
   state_->diagram = voronoi2d::weighted_diagram(sites, weights, job);
   state_->centers.assign(centers.begin(), centers.end());
-  state_->add_circles(JobStage(job, "Sweeping circles"));
+  const JobStage stage(job, "Sweeping circles");
+  state_->add_circles(stage);
+  const std::vector<Index> nearest = state_->nearest_circles(stage);
+  if (domain)
+    state_->stop_within(*domain, nearest, stage);
+  else
+    state_->stop_at_vertices(nearest);
+  for (const State::Circle& circle : state_->circles)
+    if (!circle.is_done()) state_->radius = std::min(state_->radius, circle.next_radius());
 }
 
 SweepCircles::~SweepCircles() = default;

