@@ -142,7 +142,7 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
         "bake": {"direction_attribute"},
         "repair": set(),
     }[name]
-    dependent |= {"look", "region_name"}  # which has buttons of its own; which a part of the surface needs
+    dependent |= {"look", "region_name", "barriers_name"}  # which has buttons of its own; which other settings need
     assert set(PROPERTIES[name]) - dependent <= shown
 
 

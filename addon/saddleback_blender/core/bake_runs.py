@@ -216,7 +216,7 @@ def _check_cells(request: BakeRequest, cells: Any) -> None:
     if seen is None:
         return
     surface, sites = request.cells.surface, request.cells.sites
-    other = np.count_nonzero(surface.spread(cells.vertex_cell, -1) != seen)
+    other = np.count_nonzero(surface.spread(cells.vertex_cell, -1, cells.vertex_distance) != seen)
     # Of kept centers a vertex half way between two may come to either.
     if other > (0 if sites is None else MOST_UNSURE * len(seen)):
         raise BadInputError(

@@ -94,12 +94,24 @@ class Surface:
         """(V,) values of the Blender mesh's vertices -> (n,) of `vertices`."""
         return np.ascontiguousarray(values if self.used is None else values[self.used], np.float64)
 
-    def spread(self, values: NDArray[Number], fill: float) -> NDArray[Number]:
-        """(n,) values of `vertices` -> (V,) of the Blender mesh's, loose ones `fill`."""
+    @cached_property
+    def has_copies(self) -> bool:
+        """Tells whether vertices of the Blender mesh are there several times: at barriers, where parts meet."""
+        return self.used is not None and len(np.unique(self.used)) < len(self.used)
+
+    def copies(self, vertices: NDArray[np.integer]) -> Indices:
+        """Numbers in `vertices` of all copies of the Blender mesh's."""
+        if self.used is None:
+            return np.asarray(vertices, np.int32)
+        return np.flatnonzero(np.isin(self.used, vertices)).astype(np.int32)
+
+    def spread(self, values: NDArray[Number], fill: float, by: Reals | None = None) -> NDArray[Number]:
+        """(n,) values of `vertices` -> (V,) of the Blender mesh's, loose ones `fill`; of copies that of least `by`."""
         if self.used is None:
             return values
+        order = np.argsort(by, kind="stable")[::-1] if by is not None and self.has_copies else slice(None)
         full = np.full(self.vertex_count, fill, values.dtype)
-        full[self.used] = values
+        full[self.used[order]] = values[order]  # the last one written stays
         return full
 
 

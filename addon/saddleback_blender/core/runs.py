@@ -58,7 +58,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     if settings.write_edge_distance:
         with progress.stage(0.985, "measuring the way to the edges"):
             found = cache.get(("edge distance", *key), lambda: _edge_distance(surface, split), lambda a: a.nbytes)
-        result = replace(result, edge_distance=surface.spread(found, np.inf))
+        result = replace(result, edge_distance=surface.spread(found, np.inf, found))
     if has_mesh:
         shape = shape_of_each(shape_of(settings), request, solved.cells.sites)
         made = cells_of(mesh, split, shape, key, progress, cache)
@@ -165,7 +165,7 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
     values = cache.get(key, solve, lambda array: array.nbytes)
     progress.check()
     isolines = _isolines(surface, values, settings, progress) if settings.make_isolines else None
-    return DistanceResult(surface.spread(values, np.inf), isolines)
+    return DistanceResult(surface.spread(values, np.inf, values), isolines)
 
 
 def _digest_of(sources: Points | tuple[Polyline, ...], limit: float) -> str:
@@ -321,8 +321,8 @@ def _has_lines(request: TessellateRequest) -> bool:
 def _result(request: TessellateRequest, solved: Solved, density: Reals | None) -> CellsResult:
     cells, surface = solved.cells, request.surface
     return CellsResult(
-        vertex_cell=surface.spread(cells.vertex_cell, -1),
-        vertex_distance=surface.spread(cells.vertex_distance, np.inf),
+        vertex_cell=surface.spread(cells.vertex_cell, -1, cells.vertex_distance),
+        vertex_distance=surface.spread(cells.vertex_distance, np.inf, cells.vertex_distance),
         vertex_density=None if density is None else surface.spread(density, 0.0),
         frame=solved.frame,
         sites_position=solved.site_positions,

@@ -16,6 +16,14 @@ class RegionSettings:
 
 
 @dataclass(frozen=True)
+class BarrierSettings:
+    """Holds what is not crossed: the properties of operators that measure distances."""
+
+    barriers: str = "NONE"  # NONE, SEAMS, SHARP, ATTRIBUTE
+    barriers_name: str = ""  # of the attribute of edges or faces
+
+
+@dataclass(frozen=True)
 class PatternSettings(RegionSettings):
     """And whether the pattern is mirrored."""
 
@@ -41,7 +49,7 @@ class DensitySettings:
 
 
 @dataclass(frozen=True)
-class TessellateSettings(DensitySettings, PatternSettings):
+class TessellateSettings(DensitySettings, PatternSettings, BarrierSettings):
     """All properties of `saddleback.tessellate`; lengths are world units, shares percent of a cell's size.
 
     Objects are given by name ("" = none).
@@ -122,7 +130,7 @@ class TessellateSettings(DensitySettings, PatternSettings):
 
 
 @dataclass(frozen=True)
-class DistanceSettings(RegionSettings):
+class DistanceSettings(RegionSettings, BarrierSettings):
     """All properties of `saddleback.distance`; lengths are world units, objects are given by name ("" = none)."""
 
     sources: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURVES, CURSOR
@@ -148,7 +156,7 @@ class DistanceSettings(RegionSettings):
 
 
 @dataclass(frozen=True)
-class PathSettings(RegionSettings):
+class PathSettings(RegionSettings, BarrierSettings):
     """All properties of `saddleback.path`; lengths are world units."""
 
     points: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURSOR

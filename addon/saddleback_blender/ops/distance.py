@@ -77,7 +77,8 @@ class DistanceOperator(SurfaceOperator):
         if warning:
             self.report({"WARNING"}, warning)
         lines = "" if result.isolines is None else f", {_count(len(set(result.isolines.level)), 'isoline')}"
-        return f"'{source.name}': {int(reached.sum())} vertices reached, the farthest at {farthest:.4g}{lines}"
+        beyond = "" if reached.all() or settings.limit > 0 else f"; no way to the other {int((~reached).sum())}"
+        return f"'{source.name}': {int(reached.sum())} vertices reached, the farthest at {farthest:.4g}{lines}{beyond}"
 
 
 class SADDLEBACK_OT_distance(DistanceOperator, bpy.types.Operator):

@@ -26,6 +26,7 @@ from ..props.layers import (
 from .paint import HelperOperator
 
 REGION_ATTRIBUTE = "saddleback_region"
+BARRIERS_ATTRIBUTE = "saddleback_barriers"
 
 
 class SADDLEBACK_OT_layer_add(HelperOperator, bpy.types.Operator):
@@ -122,6 +123,37 @@ class SADDLEBACK_OT_region_from_selection(HelperOperator, bpy.types.Operator):
         return f"'{source.name}': {int(is_selected.sum())} faces are the layer's region"
 
 
+class SADDLEBACK_OT_barriers_from_selection(HelperOperator, bpy.types.Operator):
+    """Takes the selected edges or faces as barriers."""
+
+    bl_idname = "saddleback.barriers_from_selection"
+    bl_label = "Take Selection"
+    bl_description = (
+        "Let nothing cross the edges that were selected in Edit Mode, or the faces where it selects faces; they are "
+        "kept as an attribute"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    def help(self, context: bpy.types.Context, source: bpy.types.Object) -> str:
+        """Writes the attribute."""
+        check_own_mesh(source)
+        check_layer(source)
+        has_faces = context.tool_settings.mesh_select_mode[2]
+        elements, domain, what = (
+            (source.data.polygons, "FACE", "faces") if has_faces else (source.data.edges, "EDGE", "edges")
+        )
+        is_selected = np.empty(len(elements), np.bool_)
+        elements.foreach_get("select", is_selected)
+        if not is_selected.any():
+            raise BadInputError(f"'{source.name}': no {what[:-1]} is selected; select some in Edit Mode, and leave it")
+        name = f"{BARRIERS_ATTRIBUTE}{suffix_of(source)}"
+        set_attribute(source.data, name, domain, is_selected)
+        for setting in ("barriers", "barriers_name"):
+            rollback.remember_setting(source.saddleback, setting)
+        source.saddleback.barriers, source.saddleback.barriers_name = "ATTRIBUTE", name
+        return f"'{source.name}': {int(is_selected.sum())} {what} are barriers"
+
+
 def _layer(source: bpy.types.Object) -> bpy.types.PropertyGroup:
     layer = active_layer(source)
     if layer is None:
@@ -135,4 +167,5 @@ CLASSES = (
     SADDLEBACK_OT_layer_freeze,
     SADDLEBACK_OT_layer_delete,
     SADDLEBACK_OT_region_from_selection,
+    SADDLEBACK_OT_barriers_from_selection,
 )

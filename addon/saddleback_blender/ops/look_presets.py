@@ -31,6 +31,7 @@ OWN = (
     "sources",
     "forbidden_",
     "region",
+    "barriers",
     "mirror_x",
 )
 LINE = re.compile(r"settings\.(\w+)\.(\w+) = (.+)")

@@ -111,6 +111,10 @@ class CellsOperator(SurfaceOperator):
     ) -> Callable[[Progress], CellsResult]:
         settings = settings_of(self, TessellateSettings)
         _check(source, settings)
+        if settings.mirror_x and settings.barriers != "NONE":
+            raise BadInputError(
+                f"'{source.name}': barriers are not mirrored; switch X Mirror off, or choose no barriers"
+            )
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             request = read_request(context, source, mesh, settings, self.measured)
             mirror = read_mirror(source, mesh, request.surface) if settings.mirror_x else None

@@ -22,7 +22,7 @@ from .kinds import (
     switch,
     use_modifiers,
 )
-from .region import REGION
+from .region import BARRIERS, REGION
 
 DISTANCE_SOURCES = (
     ("SELECTED", "Selected", "Vertices selected in Edit Mode"),
@@ -72,6 +72,7 @@ DISTANCE: dict[str, Any] = {
     "distance_attribute": name_of("Attribute", "Where distances are written", "saddleback_distance"),
     "look": look("distance"),
     **REGION,
+    **BARRIERS,
 }
 DISTANCE_BEGIN: dict[str, Any] = {
     "sources": "CURSOR",

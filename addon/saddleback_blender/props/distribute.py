@@ -10,7 +10,7 @@ from bpy.props import FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
 from .kinds import choice, length, lengths, look, name_of, share, switch, use_modifiers
-from .region import LAYER_SETTINGS
+from .region import PATTERN
 from .tessellate import TESSELLATE
 
 SHAPES = (
@@ -105,6 +105,6 @@ DISTRIBUTE: dict[str, Any] = {
         "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
     ),
     "look": look("distribute"),
-    **LAYER_SETTINGS,
+    **PATTERN,
 }  # fmt: skip
 DISTRIBUTE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}

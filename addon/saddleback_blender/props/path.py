@@ -20,7 +20,7 @@ from .kinds import (
     switch,
     use_modifiers,
 )
-from .region import REGION
+from .region import BARRIERS, REGION
 
 PATH_POINTS = (
     *DISTANCE_SOURCES[:3],
@@ -49,5 +49,6 @@ PATH: dict[str, Any] = {
     "lift": length("Lift", "How far the paths run above the surface", 0.0),
     "lift_share": share("Lift", "How far the paths run above the surface, in percent of the extent", 0.0),
     **REGION,
+    **BARRIERS,
 }
 PATH_BEGIN: dict[str, Any] = {"points": "CURSOR", "use_modifiers": True, "lengths": "RELATIVE"}

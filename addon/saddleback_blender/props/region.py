@@ -19,6 +19,18 @@ REGION: dict[str, Any] = {
     "region": choice("On", "Which part of the object the layer covers", REGIONS, "WHOLE"),
     "region_name": name_of("Region", "The vertex group, attribute or material of the part that the layer covers"),
 }
+BARRIER_KINDS = (
+    ("NONE", "None", "Nothing but the surface's own border"),
+    ("SEAMS", "Seams", "Edges that are marked as seams"),
+    ("SHARP", "Sharp Edges", "Edges that are marked sharp"),
+    ("ATTRIBUTE", "Attribute", "Edges whose values are above one half, or faces, which are left out"),
+)
+# Of the operators that measure distances.
+BARRIERS: dict[str, Any] = {
+    "barriers": choice("Barriers", "What distances, paths and cells do not cross", BARRIER_KINDS, "NONE"),
+    "barriers_name": name_of("Barriers", "The attribute of the edges or faces that are not crossed"),
+}
 # Of the operators that make patterns.
 MIRROR: dict[str, Any] = {"mirror_x": switch("X Mirror", "The same pattern to both sides of the object's own X", False)}
-LAYER_SETTINGS = REGION | MIRROR
+PATTERN = REGION | MIRROR
+LAYER_SETTINGS = PATTERN | BARRIERS

@@ -62,6 +62,11 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
         column.prop_search(props, "region_name", item.data, "materials", text="Material", icon="MATERIAL")
     elif props.region == "FACES":
         column.operator("saddleback.region_from_selection", icon="FACESEL")
+    column.prop(props, "barriers")
+    if props.barriers == "ATTRIBUTE":
+        row = column.row(align=True)
+        row.prop_search(props, "barriers_name", item.data, "attributes", text="Name", icon="SPREADSHEET")
+        row.operator("saddleback.barriers_from_selection", text="", icon="EDGESEL")
 
 
 def draw_layers(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:

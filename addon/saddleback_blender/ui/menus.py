@@ -25,6 +25,7 @@ PAGES = {
     "repair": "repair.md",
     "layer_": "layers.md",
     "region_": "layers.md",
+    "barriers_": "layers.md",
 }
 # Of settings on objects, by the group that they are in.
 GROUPS = {
@@ -57,6 +58,7 @@ ENTRIES = (
     ("layer_freeze", "FREEZE"),
     ("layer_delete", "TRASH"),
     ("region_from_selection", "FACESEL"),
+    ("barriers_from_selection", "EDGESEL"),
     None,
     ("repair", "TOOL_SETTINGS"),
     ("hide_source", "HIDE_OFF"),

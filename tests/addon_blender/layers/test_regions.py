@@ -7,7 +7,7 @@ import pytest
 from scenes import attribute, fingerprint, grid, positions, select, sphere
 
 from saddleback_blender.bridge.inputs.mesh_in import read_surface
-from saddleback_blender.core.surfaces.parts import part_at_pinches
+from saddleback_blender.core.surfaces.parts import NO_EDGES, part
 
 QUICK = {"iterations": 2, "k": 30}
 
@@ -221,6 +221,6 @@ def test_parts_that_meet_in_a_vertex_are_parted_there():
 
 def test_a_whole_surface_is_not_parted():
     triangles = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]], np.int32)
-    parted, copies = part_at_pinches(triangles, 4)
+    parted, copies = part(triangles, 4, NO_EDGES)
     assert not len(copies)
     np.testing.assert_array_equal(parted, triangles)

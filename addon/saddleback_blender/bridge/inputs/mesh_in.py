@@ -15,7 +15,7 @@ from ...core.errors import BadInputError
 from ...core.requests import Surface
 from ...core.results import EdgeMarks, Indices, Reals
 from ...core.solids.mesh_edges import edge_keys
-from ...core.surfaces.parts import part_at_pinches
+from ...core.surfaces.parts import NO_EDGES, lonely_edge, part
 from ...core.surfaces.seen_places import seen_from
 from .evaluated import evaluated
 
@@ -46,11 +46,13 @@ def read_surface(
     mesh: bpy.types.Mesh,
     check: bool = True,
     is_inside: NDArray[np.bool_] | None = None,
+    barriers: Indices = NO_EDGES,
 ) -> Surface:
     """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles.
 
-    With `is_inside` (polygons,) it is a part of that. Raises BadInputError for a mesh without faces and, with `check`,
-    for coordinates that are not finite.
+    With `is_inside` (polygons,) it is a part of that, and it is parted along `barriers` (n, 2), edges of the mesh.
+    Raises BadInputError for a mesh without faces, a barrier that parts nothing and, with `check`, for coordinates that
+    are not finite.
     """
     vertices = to_world(source, compat.read_positions(mesh))
     if check and not np.isfinite(vertices).all():
@@ -64,10 +66,18 @@ def read_surface(
     count, kept, copied = len(vertices), None, np.empty(0, np.int32)
     if is_inside is not None:
         kept = np.flatnonzero(is_inside[read_triangle_polygons(mesh)]).astype(np.int32)
-        triangles, copied = part_at_pinches(triangles[kept], count)
+        triangles = triangles[kept]
+    lonely = lonely_edge(triangles, count, barriers) if len(barriers) else None
+    if lonely is not None:
+        raise BadInputError(
+            f"'{source.name}': the barrier from vertex {lonely[0]} to {lonely[1]} is a single edge, which parts "
+            "nothing; mark an edge beside it, too"
+        )
+    if is_inside is not None or len(barriers):
+        triangles, copied = part(triangles, count, barriers)
     used, triangles = _compact(triangles, count + len(copied))
     if len(copied):
-        used = np.concatenate([np.arange(count, dtype=np.int32), copied])[used]
+        used = np.concatenate([np.arange(count, dtype=np.int32), copied])[slice(None) if used is None else used]
     return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used, kept)
 
 

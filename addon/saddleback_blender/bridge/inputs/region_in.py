@@ -12,7 +12,9 @@ from ...core.errors import BadInputError
 from ...core.fields.density import channel
 from ...core.requests import Surface
 from ...core.results import Reals
-from ...core.settings import RegionSettings
+from ...core.settings import BarrierSettings, RegionSettings
+from ...core.surfaces.parts import NO_EDGES
+from .barriers_in import OTHERS, read_barriers
 from .density import NUMBER_TYPES, read_attribute, read_vertex_group
 from .materials_in import shown_materials
 from .mesh_in import read_surface
@@ -22,12 +24,22 @@ ANOTHER_REGION = "choose another region for the layer"
 
 def read_part(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: RegionSettings) -> Surface:
     """The surface of the mesh, the object's own or evaluated one, in the region. Raises BadInputError."""
+    edges, left_out = NO_EDGES, None
+    if isinstance(settings, BarrierSettings):
+        edges, left_out = read_barriers(source, mesh, settings)
     if settings.region == "WHOLE":
-        return read_surface(source, mesh)
-    is_inside, label = _faces(source, mesh, settings)
-    if not is_inside.any():
-        raise BadInputError(f"'{source.name}': no face is in the region, {label}; choose others, or {ANOTHER_REGION}")
-    return read_surface(source, mesh, is_inside=is_inside)
+        is_inside = None
+    else:
+        is_inside, label = _faces(source, mesh, settings)
+        if not is_inside.any():
+            raise BadInputError(
+                f"'{source.name}': no face is in the region, {label}; choose others, or {ANOTHER_REGION}"
+            )
+    if left_out is not None:
+        is_inside = ~left_out if is_inside is None else is_inside & ~left_out
+        if not is_inside.any():
+            raise BadInputError(f"'{source.name}': the barriers leave no face; {OTHERS}")
+    return read_surface(source, mesh, is_inside=is_inside, barriers=edges)
 
 
 def _faces(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: RegionSettings) -> tuple[NDArray[np.bool_], str]:

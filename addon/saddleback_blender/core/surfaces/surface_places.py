@@ -25,6 +25,17 @@ def compact_points(surface: Surface, points: Points, what: str) -> Points:
     if len(loose):
         where = "no face; choose one of the surface" if surface.kept is None else "no face of the layer's region"
         raise BadInputError(f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to {where}")
+    if surface.has_copies:
+        copies = surface.copies(points.astype(np.int32))
+        if what == "source":  # on all sides
+            return copies
+        used = np.bincount(surface.used[copies], minlength=surface.vertex_count)  # type: ignore[index]
+        several = np.nonzero(used[points] > 1)[0]
+        if len(several):
+            raise BadInputError(
+                f"'{surface.name}': the {what} at vertex {points[several[0]]} is on both sides of a barrier; choose "
+                "one beside it"
+            )
     return vertices
 
 
