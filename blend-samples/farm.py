@@ -13,6 +13,7 @@ that was ended may simply be started again. The exit code is 0 when every frame 
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import re
 import sys
@@ -109,6 +110,8 @@ def main() -> None:
         sys.exit(f"--object: the scene has no object {asked.object or 'that is active'}; name one")
     if item is not None:
         bpy.context.view_layer.objects.active = item
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a farm's log may have no letter for what a folder is called
+        sys.stdout.reconfigure(errors="backslashreplace")
     for frame in asked.frames:
         path = place_of(str(Path(asked.output).resolve()), frame)
         if path.is_file() and path.stat().st_size > 0 and not asked.force:

@@ -6,6 +6,7 @@ on where they were ended.
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import time
@@ -46,14 +47,15 @@ def place(tmp_path):
     render.resolution_x, render.resolution_y, render.resolution_percentage = 16, 12, 100
     bpy.context.view_layer.objects.active = item
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    (tmp_path / "blend-samples").symlink_to(REPOSITORY / "blend-samples")
+    (tmp_path / "blend-samples").mkdir()  # copies: not everyone may make links in Windows
+    shutil.copy(REPOSITORY / "blend-samples" / "farm.py", tmp_path / "blend-samples")
     scripts = tmp_path / "scripts"
-    (scripts / "addons").mkdir(parents=True)
-    (scripts / "startup").mkdir()
-    (scripts / "addons" / "saddleback_blender").symlink_to(REPOSITORY / "addon" / "saddleback_blender")
+    (scripts / "startup").mkdir(parents=True)
+    add_on = REPOSITORY / "addon" / "saddleback_blender"
+    shutil.copytree(add_on, scripts / "addons" / "saddleback_blender", ignore=shutil.ignore_patterns("__pycache__"))
     folders = [path for path in os.environ.get("SADDLEBACK_PYTHONPATH", "").split(os.pathsep) if path]
     where = f"import sys\nsys.path[:0] = {folders!r}\ndef register(): pass\n"
-    (scripts / "startup" / "where_saddleback_is.py").write_text(where)
+    (scripts / "startup" / "where_saddleback_is.py").write_text(where, encoding="utf-8")
     return tmp_path
 
 
@@ -65,6 +67,7 @@ def made_ready(command, place):
         words = ["python", words[at + 1], words[at - 1], *words[words.index("--") + 1 :]]
     words[0] = PROGRAM or sys.executable
     environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(place / "scripts"), "PWD": str(place)}
+    environment["PYTHONIOENCODING"] = "ascii"  # as logs in Windows, which know the letters of one language
     if not PROGRAM:
         paths = [str(place / "scripts" / "addons"), os.environ.get("SADDLEBACK_PYTHONPATH", "")]
         environment["PYTHONPATH"] = os.pathsep.join(paths)
@@ -87,7 +90,7 @@ def farm(place, *arguments):
 
 def frames(place, suffix="png"):
     return [f"out/frame.{frame:04}.{suffix}" for frame in (1, 2, 3)], sorted(
-        str(path.relative_to(place)) for path in (place / "out").iterdir()
+        path.relative_to(place).as_posix() for path in (place / "out").iterdir()
     )
 
 
@@ -157,6 +160,12 @@ def test_what_is_there_is_left_and_the_rest_made(place):
     assert (place / "out" / "frame.0001.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_folder_that_the_log_has_no_letters_for(place):
+    done = farm(place, "--frames", "1", "--output", "猫/frame.####.png")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (place / "猫" / "frame.0001.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_a_task_that_is_killed_is_started_again(place):
     words, environment = made_ready(farm_words("--frames", "1-3", "--output", "out/frame.####.exr"), place)
     task = subprocess.Popen(words, cwd=place, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -198,7 +207,7 @@ def test_a_deforming_character_needs_no_add_on(place):
     """What was made once follows the mesh in every frame: edges of cells are three times as long at its end."""
     assert bpy.ops.saddleback.tessellate() == {"FINISHED"}
     bpy.ops.wm.save_as_mainfile(filepath=str(place / "scene.blend"))
-    (place / "scripts" / "addons" / "saddleback_blender").unlink()
+    shutil.rmtree(place / "scripts" / "addons" / "saddleback_blender")
     done = farm(place, "--frames", "1,3", "--output", "out/frame.####.obj")
     assert done.returncode == 0, done.stdout + done.stderr
     first, last = (widths(place / "out" / f"frame.{frame:04}.obj") for frame in (1, 3))
