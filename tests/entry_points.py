@@ -281,6 +281,8 @@ def calls(at: Inputs) -> dict[str, Call]:
         "add_barriers": lambda: sb.add_barriers(at.mesh, edges=at.mesh.edges[::7], curves=[at.curve]),
         "arcs_across": lambda: sb.arcs_across(at.parts[0], 1),
         "unite_arcs": lambda **more: sb.unite_arcs(at.parts[0], at.across, **more),
+        "SaddleVertexGraph.arcs": lambda: at.graph.arcs(),
+        "SaddleVertexGraph.neighbors": lambda: at.graph.neighbors(7),
         "SaddleVertexGraph.distances": lambda: at.graph.distances(at.few),
         "SaddleVertexGraph.nearest": lambda: at.graph.nearest(at.few),
         "SaddleVertexGraph.fields": lambda **more: at.graph.fields(at.few, **more),

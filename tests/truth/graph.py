@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import ConvexHull
 
 import saddleback as sb
@@ -176,3 +178,39 @@ def _sphere(radius: float) -> tuple[Floats, NDArray[np.int32]]:
     vertices = np.vstack([np.eye(3), -np.eye(3)]) * radius
     octants = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
     return vertices, np.array(octants, dtype=np.int32)
+
+
+@guards("SaddleVertexGraph.arcs", "SaddleVertexGraph.neighbors", "SaddleVertexGraph.tiers", "Mesh.vertex_kinds")
+def arcs_are_the_graph(mesh: sb.Mesh, rng: Random) -> None:
+    """Another program's Dijkstra over the arcs finds the graph's distances; neighbors are rows; tiers, by angles."""
+    graph = sb.SaddleVertexGraph(mesh, **random_rule(mesh, rng))
+    offsets, targets, lengths = graph.arcs()
+    count = mesh.vertex_count
+    matrix = csr_matrix((lengths, targets, offsets), shape=(count, count))
+    assert (matrix != matrix.T).nnz == 0
+    assert matrix.nnz == graph.arc_count
+    source = int(rng.integers(count))
+    found, other = graph.distances(source), dijkstra(matrix, indices=source)
+    reached = np.isfinite(found)
+    assert np.array_equal(reached, np.isfinite(other))
+    np.testing.assert_allclose(other[reached], found[reached], rtol=1e-12)
+    row = slice(offsets[source], offsets[source + 1])
+    vertices, ways, angles = graph.neighbors(source)
+    assert np.array_equal(vertices, targets[row])
+    assert np.array_equal(ways, lengths[row])
+    assert (angles >= -1e-4).all()
+    assert (angles <= mesh.total_angles[source] + 1e-4).all()
+    turns = np.zeros(count)
+    for i in range(3):
+        u, v = (mesh.vertices[mesh.triangles[:, (i + k) % 3]] - mesh.vertices[mesh.triangles[:, i]] for k in (1, 2))
+        cosines = np.einsum("ij,ij->i", u, v) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1)
+        np.add.at(turns, mesh.triangles[:, i], np.arccos(np.clip(cosines, -1, 1)))
+    kinds = np.sign(2 * np.pi - turns)
+    border = np.isin(np.arange(count), sb.border_edges(mesh.triangles, count)[0])
+    kinds[border] = -1
+    clear = (np.abs(turns - 2 * np.pi) > 1e-6) | border
+    assert np.array_equal(mesh.vertex_kinds[clear], kinds[clear])
+    assert np.isin(np.arange(count)[mesh.vertex_kinds == -1], mesh.saddle_vertices).all()
+    ends = (mesh.vertex_kinds[np.repeat(np.arange(count), np.diff(offsets))] == -1).astype(int)
+    ends += mesh.vertex_kinds[targets] == -1
+    assert graph.tiers == {"S-S": (ends == 2).sum() // 2, "N-S": (ends == 1).sum() // 2, "N-N": (ends == 0).sum() // 2}

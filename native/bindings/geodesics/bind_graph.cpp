@@ -235,6 +235,7 @@ void bind_graph(py::module_& m) {
         return message("<saddleback.SaddleVertexGraph ", how, ", ", graph.arc_count(), " arcs>");
       });
   bind_queries(type);
+  bind_neighbors(type);
 }
 
 }  // namespace saddleback::bindings

@@ -1,5 +1,5 @@
 #pragma once
-// The graph's questions are bound apart from the graph itself.
+// The graph's questions and neighbors are bound apart from the graph itself.
 
 #include <pybind11/pybind11.h>
 
@@ -8,5 +8,6 @@
 namespace saddleback::bindings {
 
 void bind_queries(pybind11::class_<SaddleVertexGraph>& graph);
+void bind_neighbors(pybind11::class_<SaddleVertexGraph>& graph);
 
 }  // namespace saddleback::bindings

@@ -1,3 +1,4 @@
+#include "saddleback/geodesics/graph_neighbors.h"
 #include "saddleback/mesh/mesh.h"
 
 #include "convert/convert.h"
@@ -97,6 +98,11 @@ void bind_mesh(py::module_& m) {
           "saddle_vertices", [](const Mesh& mesh) { return read_only(to_array(mesh.saddle_vertices())); },
           "(n,) int32: inner vertices whose total angle exceeds 2 pi, and all boundary vertices: where a shortest path "
           "may bend.")
+      .def_property_readonly(
+          "vertex_kinds", [](const Mesh& mesh) { return read_only(to_array(vertex_kinds(mesh))); },
+          "(V,) int8: the sign of the curvature: -1 saddle vertices, with all of the boundary; 0 Euclidean ones, flat "
+          "to "
+          "1e-10; 1 spherical ones.")
       .def_property_readonly(
           "boundary_vertices", [](const Mesh& mesh) { return read_only(to_array(mesh.boundary_vertices())); },
           "(n,) int32: vertices on the boundary.")

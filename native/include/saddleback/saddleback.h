@@ -14,6 +14,7 @@
 #include "saddleback/field/streamline.h"
 #include "saddleback/geodesics/exact_distances.h"
 #include "saddleback/geodesics/geodesic_paths.h"
+#include "saddleback/geodesics/graph_neighbors.h"
 #include "saddleback/geodesics/graph_parts.h"
 #include "saddleback/geodesics/log_map.h"
 #include "saddleback/geodesics/polar_coordinates.h"

@@ -148,6 +148,9 @@ class Mesh:
     def saddle_vertices(self) -> _Indices:
         """(n,) int32: inner vertices whose total angle exceeds 2 pi, and all boundary vertices: where a shortest path may bend."""
     @property
+    def vertex_kinds(self) -> NDArray[np.int8]:
+        """(V,) int8: the sign of the curvature: -1 saddle vertices, with all of the boundary; 0 Euclidean ones, flat to 1e-10; 1 spherical ones."""
+    @property
     def boundary_vertices(self) -> _Indices:
         """(n,) int32: vertices on the boundary."""
     @property
@@ -937,6 +940,51 @@ class SaddleVertexGraph:
         job: Job | None = None,
         pinned: bool = False,
     ) -> None: ...
+    def neighbors(self, vertex: SupportsIndex) -> tuple[_Indices, _Floats, _Floats]:
+        """The vertices that one is linked to.
+
+        Parameters
+        ----------
+        vertex : int
+
+        Returns
+        -------
+        tuple of (n,) int32, (n,) float64, (n,) float64
+            Vertices, ascending; lengths of the arcs to them, mesh units; angles in which the arcs leave, radians, as `trace`
+            takes them.
+
+        Raises
+        ------
+        InputError
+            A vertex out of range.
+
+        Notes
+        -----
+        O(degree times faces crossed): each arc is unfolded again for its angle.
+        """
+    def arcs(self, *, job: Job | None = None) -> tuple[NDArray[np.int64], _Indices, _Floats]:
+        """All arcs in compressed sparse rows, as SciPy's and others' graphs take them.
+
+        ``scipy.sparse.csr_matrix((lengths, targets, offsets))`` is the matrix of the graph's lengths.
+
+        Parameters
+        ----------
+        job : Job, optional
+            Watched for progress and cancellation.
+
+        Returns
+        -------
+        tuple of (V + 1,) int64, (arc_count,) int32, (arc_count,) float64
+            Offsets: the arcs of vertex v are ``offsets[v]`` to ``offsets[v + 1]``; targets, ascending within each; lengths, mesh
+            units, equal to the bit for an arc and its reverse.
+
+        Notes
+        -----
+        O(arcs log degree); copies of 12 bytes an arc.
+        """
+    @property
+    def tiers(self) -> dict[str, int]:
+        """dict of str to int: arcs by their ends, each counted once: "S-S" between saddle vertices, "N-S" from one to another vertex, "N-N" between others [ying2013]. O(arcs)."""
     def distances(
         self,
         sources: _Sources,
