@@ -29,6 +29,8 @@ def blocks(language):
 @pytest.fixture
 def place(tmp_path):
     """A folder as the page takes it for granted: the scene, the script, and the add-on for those Blenders."""
+    tmp_path = tmp_path / "two words"
+    tmp_path.mkdir()
     item = grid(n=12)
     item.shape_key_add(name="rest")
     key = item.shape_key_add(name="long")
@@ -142,7 +144,7 @@ def test_opencue(place, monkeypatch):
     exec(script, {})
     ((layer,),) = [layers]
     assert layer["range"] == "1-240"
-    assert not [word for word in layer["command"] if "/" in word and not word.startswith("/")]
+    assert all(Path(word).is_absolute() for word in layer["command"] if "/" in word)
     check(run([word.replace("#FRAMESPEC#", "1-3") for word in layer["command"]], place), place)
 
 
