@@ -24,25 +24,25 @@
 namespace saddleback {
 namespace {
 
-// Shares of the time, until then: angles unfolded, nodes ordered, edges numbered, tables laid, paths bounded.
-constexpr double k_unfolded = 0.04, k_ordered = 0.06, k_numbered = 0.08, k_laid = 0.2, k_bounded = 0.22;
-// Chunks of LaidNodes: with one, of a twentieth of the blocks windows went further, and tables were laid again.
-constexpr int k_first_halo = 2;
-// Of what is left then, the first search takes this much.
-constexpr double k_first_search = 0.9;
+// Shares of the time, until then: angles unfolded, nodes ordered, paths bounded.
+constexpr double k_unfolded = 0.04, k_ordered = 0.06, k_bounded = 0.1;
+// And of the rest: tables laid, the first search.
+constexpr double k_laid = 0.1, k_searched = 0.9;
+// Rings of LaidNodes. From an eighth of the blocks windows went further than 6, from one in 300 further than 12: for
+// those tables are laid again.
+constexpr int k_first_halo = 12;
 
 void check_threads(int threads) {
   if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
 }
 
-std::vector<Index> chunks_of(std::span<const Index> blocks) {
-  static_assert(LaidNodes::k_chunk % k_nodes_a_block == 0);
-  std::vector<Index> chunks;
+std::vector<Index> nodes_of(std::span<const Index> blocks, Index node_count) {
+  std::vector<Index> nodes;
   for (const Index block : blocks) {
-    const Index chunk = block * k_nodes_a_block / LaidNodes::k_chunk;
-    if (chunks.empty() || chunks.back() != chunk) chunks.push_back(chunk);
+    const Index end = std::min(node_count, (block + 1) * k_nodes_a_block);
+    for (Index node = block * k_nodes_a_block; node < end; ++node) nodes.push_back(node);
   }
-  return chunks;
+  return nodes;
 }
 
 PartBytes bytes_of(PartHeader header, std::span<const KeptArcs> blocks) {
@@ -57,23 +57,17 @@ PartBytes bytes_of(PartHeader header, std::span<const KeptArcs> blocks) {
 }
 
 /// Finds the arcs of the range's blocks.
-std::vector<KeptArcs> find_blocks(const ArcSearch& search, const NodeEdges& edges, const DiskRule& rule,
-                                  const PartRange& range, PartHeader& header, const JobStage& stage) {
-  const Mesh& mesh = search.unfolding.mesh();
+std::vector<KeptArcs> find_blocks(const ArcSearch& search, const ArcCodec& codec, const DiskRule& rule,
+                                  const PartRange& range, JobStage stage) {
   std::vector<Index> blocks(block_count(range.count));
   std::iota(blocks.begin(), blocks.end(), range.first / k_nodes_a_block);
-  int halo = k_first_halo;
-  const auto around = [&] { return LaidNodes(mesh, edges, search.nodes, chunks_of(blocks), halo); };
-  WaveTables tables(search.unfolding, edges, around(), search.nodes, search.vertices, search.threads,
-                    stage.part(k_numbered, k_laid));
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(),
-                       path_bounds(tables.mesh, search.threads, stage.part(k_laid, k_bounded)));
-  header.codec = codec.parts();
   std::vector<KeptArcs> found(blocks.size());
-  std::vector<std::unique_ptr<DiskRows>> finders;
-  JobStage rest = stage.part(k_bounded, 1);
-  while (true) {
-    auto some = disk_arcs_of(blocks, finders, search, codec, tables, rule, rest.part(0, k_first_search));
+  for (int halo = k_first_halo; !blocks.empty(); halo *= 2) {
+    const LaidNodes laid(search.unfolding.mesh(), search.nodes, search.vertices,
+                         nodes_of(blocks, static_cast<Index>(search.nodes.size())), halo);
+    const WaveTables tables(search.unfolding, laid, search.nodes, search.vertices, search.threads,
+                            stage.part(0, k_laid));
+    auto some = disk_arcs_of(blocks, search, codec, tables, rule, stage.part(k_laid, k_searched));
     std::vector<Index> left;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       if (some[i].counts.empty()) {
@@ -82,13 +76,10 @@ std::vector<KeptArcs> find_blocks(const ArcSearch& search, const NodeEdges& edge
         found[blocks[i] - range.first / k_nodes_a_block] = std::move(some[i]);
       }
     }
-    if (left.empty()) return found;
     blocks = std::move(left);
-    halo *= 2;
-    rest = rest.part(k_first_search, 1);
-    tables.lay(search.unfolding, edges, around(), search.nodes, search.vertices, search.threads, rest.part(0, 0.1));
-    rest = rest.part(0.1, 1);
+    stage = stage.part(k_searched, 1);
   }
+  return found;
 }
 
 /// The parts in order. \throw InputError unless each of them is there once.
@@ -165,10 +156,14 @@ PartBytes find_arcs(const Mesh& mesh, Index part, Index parts, const SaddleVerte
 
   const Unfolding unfolding(mesh, options.threads, stage.part(0, k_unfolded));
   const NodeOrder order(mesh, options.threads, stage.part(k_unfolded, k_ordered));
-  const NodeEdges edges(mesh, order.vertices, options.threads, stage.part(k_ordered, k_numbered));
+  const ArcCodec codec(
+      mesh.vertex_count(), mesh.mean_edge_length(),
+      path_bounds(mesh, order.nodes, order.vertices, options.threads, stage.part(k_ordered, k_bounded)));
+  header.codec = codec.parts();
   const ArcSearch search{unfolding, order.nodes, order.vertices, wave_kernel(options.instructions), options.threads};
   const Lattice lattice = header.accuracy > 0 ? lattice_of(unfolding, options.threads, stage) : Lattice::none;
-  const auto found = find_blocks(search, edges, disk_rule(options.k, header.accuracy, lattice), range, header, stage);
+  const auto found =
+      find_blocks(search, codec, disk_rule(options.k, header.accuracy, lattice), range, stage.part(k_bounded, 1));
   PartBytes bytes = bytes_of(header, found);
   stage.update(1);
   return bytes;

@@ -4,14 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "saddleback/geodesics/saddle_vertex_graph.h"
+#include "saddleback/support/large_array.h"
 
 namespace saddleback {
 
 /// Holds a range's arcs as they travel: they say what they are of and hold a checksum.
-using PartBytes = std::vector<std::byte>;
+using PartBytes = LargeArray<std::byte>;
 
 /// \throw InputError when a mesh of so many triangles is larger than any graph can be built for, before it is read.
 void check_graph_size(std::int64_t triangle_count);

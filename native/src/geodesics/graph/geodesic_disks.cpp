@@ -70,8 +70,15 @@ GeodesicDisks::GeodesicDisks(const WindowMesh& mesh, const WaveKernel& kernel, c
     walk_.emplace(*strips, 1 + detour_of(rule));
   }
   const std::size_t slots = static_cast<std::size_t>(mesh.node_count()) * k_batch;
-  labels_.assign(slots + k_row_padding, k_unreached);
-  arcs_.assign(slots, {k_unreached, 0});
+  labels_.resize(slots + k_row_padding);
+  arcs_.resize(slots);
+  std::fill(labels_.end() - k_row_padding, labels_.end(), k_unreached);
+  // What windows do not come to is not touched: for a part of a large mesh this memory takes longer than its arcs.
+  for (Index node = 0; node < mesh.node_count(); ++node) {
+    if (!mesh.laid().is_laid(node)) continue;
+    std::fill_n(&labels_[static_cast<std::size_t>(node) * k_batch], k_batch, k_unreached);
+    std::fill_n(&arcs_[static_cast<std::size_t>(node) * k_batch], k_batch, BestArc{k_unreached, 0});
+  }
 }
 
 void GeodesicDisks::begin(Sources sources) {
@@ -219,7 +226,8 @@ void GeodesicDisks::cross_strips() {
   now_->right_count = take_into_strips(now_->rights, now_->right_count);
   for (const auto& [window, lane, root, most] : left_strips_) {
     const Index edge = window.edge;
-    left_tables_ |= !mesh_.laid().is_open(mesh_.origin(edge));
+    left_tables_ |= edge == mesh_.beyond() || !mesh_.laid().is_open(mesh_.origin(edge));
+    if (left_tables_) return;
     const int i =
         add_window(lane, {window.ends[1], window.ends[0], mesh_.target(edge), mesh_.origin(edge), edge, root});
     const WindowRows rows = now_->lefts.rows();
@@ -260,8 +268,7 @@ int GeodesicDisks::take_into_strips(WindowColumns& windows, int count) {
     }
     const int lane = rows.edge[i] % k_batch;
     for (const StripSighting& sighting : seen_) {
-      const LaidNodes& laid = mesh_.laid();
-      left_tables_ |= !laid.is_whole() && !(laid.is_laid(sighting.node) && laid.is_laid(mesh_.origin(sighting.edge)));
+      left_tables_ |= sighting.edge == mesh_.beyond() || !mesh_.laid().is_laid(sighting.node);
       const std::int32_t slot = sighting.node * k_batch + lane;
       add_sighting(slot, sighting.place, sighting.from, sighting.edge * k_batch + lane, rows.root[i]);
       seen_on_borders_[lane].push_back({strips_->along_border(sighting.node), 0, slot});
@@ -570,7 +577,7 @@ void GeodesicDisks::relax_from(std::int32_t slot) {
 /// Calls offer(neighbor, length) for the mesh edges about a node.
 template <class Offer>
 void GeodesicDisks::for_each_neighbor(Index node, Offer&& offer) {
-  left_tables_ |= !mesh_.laid().is_laid(node);
+  left_tables_ |= !mesh_.laid().is_open(node);
   if (left_tables_) return;
   for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) {
     offer(mesh_.target(e), mesh_.length(e));

@@ -117,35 +117,30 @@ DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)
+    : WaveTables(unfolding, LaidNodes(static_cast<Index>(vertices.size())), nodes, vertices, threads, stage) {}
+
+WaveTables::WaveTables(const Unfolding& unfolding, const LaidNodes& laid, std::span<const Index> nodes,
+                       std::span<const Index> vertices, int threads, const JobStage& stage)
     : WaveTables(unfolding,
                  (check_mesh_size(unfolding.mesh().face_count()),
-                  NodeEdges(unfolding.mesh(), vertices, threads, stage.part(0, k_with_edges))),
-                 LaidNodes(static_cast<Index>(vertices.size())), nodes, vertices, threads, stage) {}
+                  NodeEdges(unfolding.mesh(), laid, vertices, threads, stage.part(0, k_with_edges))),
+                 laid, nodes, vertices, threads, stage) {}
 
 WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
                        std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                        const JobStage& stage)
     : mesh(unfolding, edges, laid, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
-      sectors(edges, laid, unfolding, vertices, threads, stage.part(k_with_mesh, 1)),
+      sectors(edges, unfolding, vertices, threads, stage.part(k_with_mesh, 1)),
       strips(unfolding, {edges.edge_of.data(), edges.edge_of.size()}, nodes, mesh.unit()) {}
-
-void WaveTables::lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
-                     std::span<const Index> nodes, std::span<const Index> vertices, int threads,
-                     const JobStage& stage) {
-  mesh.lay(unfolding, edges, laid, nodes, threads, stage.part(0, k_with_mesh));
-  sectors.lay(edges, laid, unfolding, vertices, threads, stage.part(k_with_mesh, 1));
-}
 
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
                                 const DiskRule& rule, const JobStage& stage) {
-  std::vector<std::unique_ptr<DiskRows>> finders;
-  return disk_arcs_of(all_blocks(search), finders, search, codec, tables, rule, stage);
+  return disk_arcs_of(all_blocks(search), search, codec, tables, rule, stage);
 }
 
-std::vector<KeptArcs> disk_arcs_of(std::span<const Index> blocks, std::vector<std::unique_ptr<DiskRows>>& finders,
-                                   const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
-                                   const DiskRule& rule, const JobStage& stage) {
-  finders.resize(thread_count(search.threads));
+std::vector<KeptArcs> disk_arcs_of(std::span<const Index> blocks, const ArcSearch& search, const ArcCodec& codec,
+                                   const WaveTables& tables, const DiskRule& rule, const JobStage& stage) {
+  std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(blocks, search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
     if (!finders[thread]) finders[thread] = std::make_unique<DiskRows>(search, tables, codec, rule);
     for (Index i = 0; i < count; i += k_batch) {

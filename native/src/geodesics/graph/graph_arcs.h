@@ -11,8 +11,6 @@
 
 namespace saddleback {
 
-class DiskRows;
-
 /// Holds what waves of windows run on.
 struct WaveTables {
   WindowMesh mesh;
@@ -21,12 +19,13 @@ struct WaveTables {
   /// Lays them for all nodes. \throw InputError for more triangles than slots can be numbered for; Cancelled.
   WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
              const JobStage& stage);
-  /// Lays them for some. \throw Cancelled.
+  /// Lays them for some. \throw as above.
+  WaveTables(const Unfolding& unfolding, const LaidNodes& laid, std::span<const Index> nodes,
+             std::span<const Index> vertices, int threads, const JobStage& stage);
+
+ private:
   WaveTables(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid, std::span<const Index> nodes,
              std::span<const Index> vertices, int threads, const JobStage& stage);
-  /// Lays them for others instead. \throw Cancelled.
-  void lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid, std::span<const Index> nodes,
-           std::span<const Index> vertices, int threads, const JobStage& stage);
 };
 
 /// Nodes whose arcs are kept together: so many that what is done for each block is nothing, so few that no thread waits
@@ -54,11 +53,9 @@ std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, 
                                 const DiskRule& rule, const JobStage& stage);
 
 /// Finds the arcs of some blocks of nodes with tables for these and some about them. Blocks whose windows left those
-/// are kept without arcs. `finders` are the threads', none at first, and serve again on the same tables. \throw
-/// Cancelled.
-std::vector<KeptArcs> disk_arcs_of(std::span<const Index> blocks, std::vector<std::unique_ptr<DiskRows>>& finders,
-                                   const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
-                                   const DiskRule& rule, const JobStage& stage);
+/// are kept without arcs. \throw Cancelled.
+std::vector<KeptArcs> disk_arcs_of(std::span<const Index> blocks, const ArcSearch& search, const ArcCodec& codec,
+                                   const WaveTables& tables, const DiskRule& rule, const JobStage& stage);
 
 /// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
 /// V).

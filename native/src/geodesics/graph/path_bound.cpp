@@ -4,11 +4,11 @@
 #include "geodesics/graph/path_bound.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <vector>
 
-#include "saddleback/support/large_array.h"
-
+#include "mesh/tables/outgoing.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -16,45 +16,45 @@ namespace {
 
 constexpr Index k_block = 1024;
 
-/// Holds where the half-edges out of a node lead, counter-clockwise, and their lengths in units of the mean edge. At a
-/// border one way is missing, but there is another about the face.
-struct Neighbors {
-  Index count;         ///< of nodes
-  const Index* first;  ///< per node, with the number of half-edges at the end
-  const Index* targets;
-  const double* lengths;
-
+/// Calls visit(neighbor, length) for the half-edges out of a node, counter-clockwise; lengths are in units of the mean
+/// edge. At a border one way between two nodes is missing, but there is another about the face.
+struct LaidNeighbors {
+  const WindowMesh& mesh;
   template <class Visit>
   void each(Index node, Visit&& visit) const {
-    for (Index e = first[node]; e < first[node + 1]; ++e) visit(targets[e], lengths[e]);
+    for (Index e = mesh.begin(node); e < mesh.end(node); ++e) visit(mesh.target(e), mesh.length(e));
+  }
+};
+struct MeshNeighbors {
+  const Mesh& mesh;
+  std::span<const Index> nodes, vertices;
+  template <class Visit>
+  void each(Index node, Visit&& visit) const {
+    const double unit = mesh.mean_edge_length();
+    for (const Index h : outgoing(mesh, vertices[node])) visit(nodes[mesh.to(h)], mesh.length(h) / unit);
   }
 };
 
-/// Leads from the root of one piece to that of another.
+/// Leads from one node to another or, later, from the root of one piece to that of another.
 struct Link {
   Index from, to;
   double length;
 };
 
+template <class Neighbors>
 class PathBound {
  public:
-  PathBound(const Neighbors& neighbors, int threads, const JobStage& stage)
-      : neighbors_(neighbors),
-        threads_(threads),
-        stage_(stage),
-        piece_(neighbors.count, k_none),
-        depth_(neighbors.count, 0) {}
+  PathBound(const Neighbors& neighbors, Index node_count, int threads, const JobStage& stage)
+      : neighbors_(neighbors), threads_(threads), stage_(stage), piece_(node_count, k_none), depth_(node_count, 0) {}
 
   PathBounds find() {
     const Index blocks = (node_count() + k_block - 1) / k_block;
     std::vector<std::vector<double>> depths(blocks);
-    std::vector<double> shortest(blocks);
+    std::vector<std::vector<Link>> links(blocks);
+    std::vector<double> shortest(blocks, std::numeric_limits<double>::infinity());
     parallel_for(blocks, threads_, 1, [&](Index block, int) {
       stage_.check();
-      depths[block] = cut_into_pieces(block);
-      const double* const lengths = neighbors_.lengths;
-      shortest[block] =
-          *std::min_element(lengths + neighbors_.first[block * k_block], lengths + neighbors_.first[end_of(block)]);
+      depths[block] = cut_into_pieces(block, links[block], shortest[block]);
     });
     std::vector<Index> first(static_cast<std::size_t>(blocks) + 1, 0);
     for (Index block = 0; block < blocks; ++block) {
@@ -62,21 +62,20 @@ class PathBound {
       piece_depths_.insert(piece_depths_.end(), depths[block].begin(), depths[block].end());
     }
     parallel_for(node_count(), threads_, k_block, [&](Index node, int) { piece_[node] += first[node / k_block]; });
-    std::vector<std::vector<Link>> links(blocks);
     parallel_for(blocks, threads_, 1, [&](Index block, int) {
       stage_.check();
-      links[block] = links_of(block);
+      join_pieces(links[block]);
     });
     return {2 * deepest_over_pieces(links), *std::ranges::min_element(shortest)};
   }
 
  private:
-  Index node_count() const { return neighbors_.count; }
-  Index end_of(Index block) const { return std::min(node_count(), (block + 1) * k_block); }
+  Index node_count() const { return static_cast<Index>(piece_.size()); }
 
-  /// Numbers a block's pieces from 0. \return how deep each is.
-  std::vector<double> cut_into_pieces(Index block) {
-    const Index begin = block * k_block, end = end_of(block);
+  /// Numbers a block's pieces from 0. \return how deep each is; the half-edges that lead out of them; the length of the
+  /// shortest half-edge.
+  std::vector<double> cut_into_pieces(Index block, std::vector<Link>& out, double& shortest) {
+    const Index begin = block * k_block, end = std::min(node_count(), begin + k_block);
     std::vector<double> deepest;
     std::vector<Index> queue;
     for (Index root = begin; root < end; ++root) {
@@ -89,30 +88,32 @@ class PathBound {
         const double depth = depth_[queue[next]];
         deepest.back() = std::max(deepest.back(), depth);
         neighbors_.each(queue[next], [&](Index node, double length) {
-          if (node < begin || node >= end || piece_[node] != k_none) return;
-          piece_[node] = piece;
-          depth_[node] = depth + length;
-          queue.push_back(node);
+          shortest = std::min(shortest, length);
+          const bool is_outside = node < begin || node >= end;
+          if (is_outside || (piece_[node] != k_none && piece_[node] != piece)) {
+            out.push_back({queue[next], node, length});
+          } else if (piece_[node] == k_none) {
+            piece_[node] = piece;
+            depth_[node] = depth + length;
+            queue.push_back(node);
+          }
         });
       }
     }
     return deepest;
   }
 
-  /// One for each other piece that a piece of the block touches.
-  std::vector<Link> links_of(Index block) const {
-    std::vector<Link> links;
-    for (Index node = block * k_block; node < end_of(block); ++node) {
-      neighbors_.each(node, [&](Index other, double length) {
-        if (piece_[other] != piece_[node])
-          links.push_back({piece_[node], piece_[other], depth_[node] + length + depth_[other]});
-      });
+  /// Makes links between nodes one for each other piece that a piece touches.
+  void join_pieces(std::vector<Link>& links) const {
+    for (auto& [from, to, length] : links) {
+      length = depth_[from] + length + depth_[to];
+      from = piece_[from];
+      to = piece_[to];
     }
     const auto key = [](const Link& link) { return std::tuple(link.from, link.to, link.length); };
     std::ranges::sort(links, {}, key);
     const auto same = [](const Link& a, const Link& b) { return a.from == b.from && a.to == b.to; };
     links.erase(std::unique(links.begin(), links.end(), same), links.end());
-    return links;
   }
 
   double deepest_over_pieces(const std::vector<std::vector<Link>>& links) const {
@@ -153,37 +154,21 @@ class PathBound {
   std::vector<double> piece_depths_;
 };
 
-PathBounds in_units(const PathBounds& bounds, double unit) {
+template <class Neighbors>
+PathBounds bounds_of(const Neighbors& neighbors, Index node_count, double unit, int threads, const JobStage& stage) {
+  const PathBounds bounds = PathBound(neighbors, node_count, threads, stage).find();
   return {bounds.longest * unit, bounds.shortest_edge * unit};
 }
 
 }  // namespace
 
 PathBounds path_bounds(const WindowMesh& mesh, int threads, const JobStage& stage) {
-  const Neighbors neighbors{mesh.node_count(), mesh.firsts(), mesh.targets(), mesh.lengths()};
-  return in_units(PathBound(neighbors, threads, stage).find(), mesh.unit());
+  return bounds_of(LaidNeighbors{mesh}, mesh.node_count(), mesh.unit(), threads, stage);
 }
 
 PathBounds path_bounds(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                        const JobStage& stage) {
-  const NodeEdges edges(mesh, vertices, threads, stage);
-  const double unit = mesh.mean_edge_length();
-  const auto count = static_cast<Index>(edges.halfedges.size());
-  LargeArray<Index> targets(edges.halfedges.size());
-  LargeArray<double> lengths(edges.halfedges.size());
-  constexpr Index k_chunk = 4096, k_ahead = 16;
-  parallel_for((count + k_chunk - 1) / k_chunk, threads, 1, [&](Index chunk, int) {
-    stage.check();
-    for (Index e = chunk * k_chunk; e < std::min(count, (chunk + 1) * k_chunk); ++e) {
-      const Index h = edges.halfedges[e], ahead = edges.halfedges[std::min(e + k_ahead, count - 1)];
-      __builtin_prefetch(&mesh.triangles()[Mesh::face_of(ahead)]);
-      __builtin_prefetch(&mesh.lengths()[ahead]);
-      targets[e] = nodes[mesh.to(h)];
-      lengths[e] = mesh.length(h) / unit;
-    }
-  });
-  const Neighbors neighbors{static_cast<Index>(vertices.size()), edges.first.data(), targets.data(), lengths.data()};
-  return in_units(PathBound(neighbors, threads, stage).find(), unit);
+  return bounds_of(MeshNeighbors{mesh, nodes, vertices}, mesh.vertex_count(), mesh.mean_edge_length(), threads, stage);
 }
 
 }  // namespace saddleback

@@ -15,21 +15,21 @@
 namespace saddleback {
 namespace {
 
-constexpr Index k_chunk = LaidNodes::k_chunk;
+constexpr Index k_chunk = 256;
 // Edges whose half-edges' records are asked for ahead, and edges whose neighbors' are.
 constexpr Index k_records_ahead = 24, k_neighbors_ahead = 12;
 
-/// Calls use(node, edge, halfedge) for the edges out of each laid node, a chunk of nodes to a thread. `fetch(halfedge)`
+/// Calls use(node, edge, halfedge) for all edges, a chunk of nodes to a thread. `fetch(halfedge)`
 /// and `fetch_neighbors(halfedge)` ask for what will be read: half-edges of neighboring nodes lie anywhere.
 template <class Use, class Fetch, class FetchNeighbors>
-void for_each_edge(const NodeEdges& edges, const LaidNodes& laid, int threads, const JobStage& stage, Use&& use,
-                   Fetch&& fetch, FetchNeighbors&& fetch_neighbors) {
+void for_each_edge(const NodeEdges& edges, int threads, const JobStage& stage, Use&& use, Fetch&& fetch,
+                   FetchNeighbors&& fetch_neighbors) {
   const auto nodes = static_cast<Index>(edges.first.size()) - 1, last = static_cast<Index>(edges.halfedges.size()) - 1;
   const Index chunks = (nodes + k_chunk - 1) / k_chunk;
   parallel_for(chunks, threads, 1, [&](Index chunk, int) {
     stage.update(static_cast<double>(chunk) / chunks);
     const Index begin = chunk * k_chunk, end = std::min(nodes, begin + k_chunk);
-    for (Index node = begin; node < end && laid.is_laid(node); ++node) {
+    for (Index node = begin; node < end; ++node) {
       for (Index e = edges.first[node]; e < edges.first[node + 1]; ++e) {
         fetch(edges.halfedges[std::min(e + k_records_ahead, last)]);
         fetch_neighbors(edges.halfedges[std::min(e + k_neighbors_ahead, last)]);
@@ -41,16 +41,18 @@ void for_each_edge(const NodeEdges& edges, const LaidNodes& laid, int threads, c
 
 }  // namespace
 
-NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage)
-    : first(vertices.size() + 1, 0), halfedges(mesh.halfedge_count()), edge_of(mesh.halfedge_count()) {
+NodeEdges::NodeEdges(const Mesh& mesh, const LaidNodes& laid, std::span<const Index> vertices, int threads,
+                     const JobStage& stage)
+    : first(vertices.size() + 1, 0), edge_of(mesh.halfedge_count()) {
   const auto count = static_cast<Index>(vertices.size()), chunks = (count + k_chunk - 1) / k_chunk;
   std::vector<std::vector<Index>> found(chunks);  // how many a node has is known once they are
   const JobStage finding = stage.part(0, 0.6), placing = stage.part(0.6, 1);
   parallel_for(chunks, threads, 1, [&](Index chunk, int) {
     finding.update(static_cast<double>(chunk) / chunks);
     std::vector<Index>& out = found[chunk];
-    out.reserve(8 * k_chunk);
     for (Index node = chunk * k_chunk; node < std::min(count, (chunk + 1) * k_chunk); ++node) {
+      if (!laid.is_laid(node)) continue;
+      if (out.empty()) out.reserve(8 * k_chunk);
       const std::size_t before = out.size();
       for (const Index h : outgoing(mesh, vertices[node])) {
         out.push_back(h);
@@ -59,6 +61,8 @@ NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int thre
     }
   });
   for (Index node = 0; node < count; ++node) first[node + 1] += first[node];
+  halfedges.resize(first.back());
+  if (first.back() < mesh.halfedge_count()) std::ranges::fill(edge_of, first.back());
   parallel_for(chunks, threads, 1, [&](Index chunk, int) {
     placing.update(static_cast<double>(chunk) / chunks);
     Index e = first[chunk * k_chunk];
@@ -69,34 +73,26 @@ NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int thre
   });
 }
 
-LaidNodes::LaidNodes(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes,
-                     std::span<const Index> chunks, int layers)
-    : states_(chunks_of(static_cast<Index>(nodes.size())), nothing) {
-  for (const Index chunk : chunks) states_[chunk] = open;
-  std::vector<Index> outer(chunks.begin(), chunks.end());
-  for (int layer = 0; layer < layers; ++layer) outer = widen(mesh, edges, nodes, outer, open);
-  is_whole_ = std::ranges::count(states_, open) == std::ssize(states_);
-  widen(mesh, edges, nodes, outer, laid);
-}
-
-/// Gives chunks that have none yet a state, where vertices share a face with some of the given chunks. Returns them.
-std::vector<Index> LaidNodes::widen(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes,
-                                    std::span<const Index> chunks, State state) {
-  std::vector<Index> added;
-  const auto add = [&](Index vertex) {
-    const Index chunk = nodes[vertex] / k_chunk;
-    if (states_[chunk] != nothing) return;
-    states_[chunk] = state;
-    added.push_back(chunk);
-  };
-  for (const Index chunk : chunks) {
-    const auto end = std::min(static_cast<Index>(nodes.size()), (chunk + 1) * k_chunk);
-    for (Index e = edges.first[chunk * k_chunk]; e < edges.first[end]; ++e) {
-      add(mesh.to(edges.halfedges[e]));
-      add(mesh.apex(edges.halfedges[e]));
+LaidNodes::LaidNodes(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices,
+                     std::vector<Index> inner, int rings)
+    : states_(nodes.size(), nothing) {
+  for (const Index node : inner) states_[node] = open;
+  for (int ring = 0; ring <= rings; ++ring) {
+    std::vector<Index> outer;
+    const auto add = [&](Index vertex) {
+      const Index node = nodes[vertex];
+      if (states_[node] != nothing) return;
+      states_[node] = ring < rings ? open : laid;
+      outer.push_back(node);
+    };
+    for (const Index node : inner) {
+      for (const Index h : outgoing(mesh, vertices[node])) {
+        add(mesh.to(h));
+        add(mesh.apex(h));
+      }
     }
+    inner = std::move(outer);
   }
-  return added;
 }
 
 EdgeRecord WindowMesh::record_of(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
@@ -145,31 +141,19 @@ WindowMesh::WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, const
   const Mesh& mesh = unfolding.mesh();
   unit_ = mesh.mean_edge_length();
   records_.resize(edges.halfedges.size() + 1);
-  // Kernels read the first one in lanes without a window, laid or not, and look up the labels of the slots it leads to.
-  records_[0] = records_.back() = {0, 0, k_none, k_none, 0, 0};
+  records_.back() = {0, 0, k_none, k_none, 0, 0};
   targets_.resize(edges.halfedges.size());
   lengths_.resize(edges.halfedges.size());
   saddles_.resize(vertices.size());
   for_each_edge(
-      edges, LaidNodes(static_cast<Index>(vertices.size())), threads, stage.part(0, k_recorded),
+      edges, threads, stage.part(0, k_recorded),
       [&](Index node, Index e, Index h) {
         if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
-        if (placed_.is_laid(node)) records_[e] = record_of(unfolding, edges, nodes, h);
+        records_[e] = record_of(unfolding, edges, nodes, h);
         targets_[e] = nodes[mesh.to(h)];
         lengths_[e] = mesh.length(h) / unit_;
       },
       fetch_faces(mesh), fetch_neighbors(mesh, edges, nodes));
-  find_clearances(threads, stage.part(k_recorded, 1));
-}
-
-void WindowMesh::lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid,
-                     std::span<const Index> nodes, int threads, const JobStage& stage) {
-  placed_ = laid;
-  const Mesh& mesh = unfolding.mesh();
-  for_each_edge(
-      edges, placed_, threads, stage.part(0, k_recorded),
-      [&](Index, Index e, Index h) { records_[e] = record_of(unfolding, edges, nodes, h); }, fetch_faces(mesh),
-      fetch_neighbors(mesh, edges, nodes));
   find_clearances(threads, stage.part(k_recorded, 1));
 }
 
@@ -190,7 +174,6 @@ void WindowMesh::find_clearances(int threads, const JobStage& stage) {
   LargeArray<About> about(node_count());
   parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
     look(first, node);
-    if (!placed_.is_laid(node)) return;
     for (Index e = begin(node); e < end(node); ++e) {
       const Vec2 target(length(e), 0), far = apex(e);
       about[node].clearance = std::min(about[node].clearance, distance_to_segment(Vec2(0, 0), target, far));
@@ -200,7 +183,6 @@ void WindowMesh::find_clearances(int threads, const JobStage& stage) {
   LargeArray<float> clearances(records_.size());
   parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
     look(second, node);
-    if (!placed_.is_laid(node)) return;
     const auto beside = [](const About& end, const Vec2& along, const Vec2& to_apex) {
       const double sine =
           along.dot(to_apex) > 0 ? std::abs(cross(along, to_apex)) / (along.norm() * to_apex.norm()) : 1;
@@ -234,8 +216,10 @@ Index WindowMesh::edge_between(Index from, Index to) const {
 
 FanMesh::FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                  const JobStage& stage)
-    : FanMesh(unfolding, NodeEdges(unfolding.mesh(), vertices, threads, stage.part(0, 0.4)), nodes, vertices, threads,
-              stage.part(0.4, 1)) {}
+    : FanMesh(unfolding,
+              NodeEdges(unfolding.mesh(), LaidNodes(static_cast<Index>(vertices.size())), vertices, threads,
+                        stage.part(0, 0.4)),
+              nodes, vertices, threads, stage.part(0.4, 1)) {}
 
 FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
                  std::span<const Index> vertices, int threads, const JobStage& stage)
@@ -243,26 +227,21 @@ FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<c
              stage.part(0, 0.7)),
       apex_directions_(edges.halfedges.size()) {
   for_each_edge(
-      edges, waves_.laid(), threads, stage.part(0.7, 1),
+      edges, threads, stage.part(0.7, 1),
       [&](Index, Index e, Index h) { apex_directions_[e] = unfolding.polar(Mesh::prev(h)); },
       [&](Index h) { __builtin_prefetch(&unfolding.polar(h)); }, [](Index) {});
 }
 
-WaveSectors::WaveSectors(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding,
-                         std::span<const Index> vertices, int threads, const JobStage& stage) {
+WaveSectors::WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices,
+                         int threads, const JobStage& stage) {
   sectors_.resize(edges.halfedges.size());
   reverse_sectors_.resize(edges.halfedges.size());
   apex_sectors_.resize(edges.halfedges.size());
   per_radian_.resize(vertices.size());
-  lay(edges, laid, unfolding, vertices, threads, stage);
-}
-
-void WaveSectors::lay(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding,
-                      std::span<const Index> vertices, int threads, const JobStage& stage) {
   const Mesh& mesh = unfolding.mesh();
   const auto per_radian = [&](Index vertex) { return ArcCodec::k_sectors / mesh.total_angle(vertex); };
   for_each_edge(
-      edges, laid, threads, stage,
+      edges, threads, stage,
       [&](Index node, Index e, Index h) {
         const double here = per_radian(vertices[node]);
         if (e == edges.first[node]) per_radian_[node] = static_cast<float>(here);

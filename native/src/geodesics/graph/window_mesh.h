@@ -13,49 +13,42 @@
 
 namespace saddleback {
 
-/// A mesh's half-edges in the order of the graph's nodes.
-struct NodeEdges {
-  std::vector<Index> first;     ///< per node, and the number of edges at the end
-  LargeArray<Index> halfedges;  ///< of the edges; those out of one node are neighbors, counter-clockwise
-  LargeArray<Index> edge_of;    ///< the halfedges' inverse
-  /// `vertices` of the nodes. \throw Cancelled.
-  NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage);
-};
-
-/// Says about which nodes tables are laid: all of them, or those of a range with a halo, by chunks of neighbors.
+/// Says about which nodes tables are laid: all of them, or those of a range with a halo.
 /// Windows may enter faces of half-edges out of *open* nodes; the nodes about these are laid for them.
 class LaidNodes {
  public:
-  static constexpr Index k_chunk = 256;
-  static Index chunks_of(Index node_count) { return (node_count + k_chunk - 1) / k_chunk; }
   /// All nodes.
-  explicit LaidNodes(Index node_count) : states_(chunks_of(node_count), open), is_whole_(true) {}
-  /// Opens the given chunks and those about them, so many layers wide. `nodes` of the vertices. O(nodes opened).
-  LaidNodes(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes, std::span<const Index> chunks,
-            int layers);
+  explicit LaidNodes(Index node_count) : states_(node_count, open) {}
+  /// Opens the given nodes and so many rings of neighbors about them. `nodes` of the vertices and `vertices` of the
+  /// nodes. O(V), but nearly nothing for each node that is not opened.
+  LaidNodes(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, std::vector<Index> inner,
+            int rings);
 
-  bool is_whole() const { return is_whole_; }
-  bool is_open(Index node) const { return states_[node / k_chunk] == open; }
-  bool is_laid(Index node) const { return states_[node / k_chunk] != nothing; }
+  bool is_open(Index node) const { return states_[node] == open; }
+  bool is_laid(Index node) const { return states_[node] != nothing; }
 
  private:
   enum State : std::uint8_t { nothing, laid, open };
-  std::vector<Index> widen(const Mesh& mesh, const NodeEdges& edges, std::span<const Index> nodes,
-                           std::span<const Index> chunks, State state);
   std::vector<State> states_;
-  bool is_whole_;
+};
+
+/// The half-edges out of the laid nodes, in the order of the graph's nodes.
+struct NodeEdges {
+  std::vector<Index> first;     ///< per node, and the number of edges at the end; none are of nodes that are not laid
+  LargeArray<Index> halfedges;  ///< of the edges; those out of one node are neighbors, counter-clockwise
+  LargeArray<Index> edge_of;    ///< the halfedges' inverse; the number of edges for half-edges that are none
+  /// `vertices` of the nodes. \throw Cancelled.
+  NodeEdges(const Mesh& mesh, const LaidNodes& laid, std::span<const Index> vertices, int threads,
+            const JobStage& stage);
 };
 
 /// Half-edges in the order of NodeEdges. Lengths are in units of the mean edge, so that
 /// single-precision bounds hold at any scale.
 class WindowMesh {
  public:
-  /// Records are those of the laid nodes; what else there is, is whole. \throw Cancelled.
+  /// Holds the edges out of laid nodes. \throw Cancelled.
   WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid, std::span<const Index> nodes,
              std::span<const Index> vertices, int threads, const JobStage& stage);
-  /// Lays the records of other nodes instead. \throw Cancelled.
-  void lay(const Unfolding& unfolding, const NodeEdges& edges, const LaidNodes& laid, std::span<const Index> nodes,
-           int threads, const JobStage& stage);
   const LaidNodes& laid() const { return placed_; }
   /// Returns what stands for half-edges out of nodes that are not open: an entry behind the last.
   Index beyond() const { return edge_count(); }
@@ -81,11 +74,6 @@ class WindowMesh {
   bool has_left(Index edge) const { return records_[edge].left >= 0; }
   /// The edge from one node to another. O(degree).
   Index edge_between(Index from, Index to) const;
-
-  /// Whole tables: per node, with the number of edges at the end; per edge; per edge.
-  const Index* firsts() const { return first_.data(); }
-  const Index* targets() const { return targets_.data(); }
-  const double* lengths() const { return lengths_.data(); }
 
  private:
   EdgeRecord record_of(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes, Index h) const;
@@ -121,11 +109,8 @@ class FanMesh {
 class WaveSectors {
  public:
   /// `vertices` of the nodes. \throw Cancelled.
-  WaveSectors(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding,
-              std::span<const Index> vertices, int threads, const JobStage& stage);
-  /// Lays them for other nodes. \throw Cancelled.
-  void lay(const NodeEdges& edges, const LaidNodes& laid, const Unfolding& unfolding, std::span<const Index> vertices,
-           int threads, const JobStage& stage);
+  WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices, int threads,
+              const JobStage& stage);
 
   float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin
   float reverse_sector(Index edge) const { return reverse_sectors_[edge]; }  ///< and at its target
