@@ -154,7 +154,7 @@ PartBytes find_arcs(const Mesh& mesh, Index part, Index parts, const SaddleVerte
   header.first_node = range.first;
   header.node_count = range.count;
 
-  const Unfolding unfolding(mesh, options.threads, stage.part(0, k_unfolded));
+  const Unfolding unfolding(mesh, options.threads, stage.part(0, k_unfolded), Unfolding::Corners::found);
   const NodeOrder order(mesh, options.threads, stage.part(k_unfolded, k_ordered));
   const ArcCodec codec(
       mesh.vertex_count(), mesh.mean_edge_length(),

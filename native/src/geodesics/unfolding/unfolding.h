@@ -26,16 +26,22 @@ inline bool is_needle(double base, double left, double right) {
 /// and v1 on the positive x axis, and in which direction h leaves v0.
 class Unfolding {
  public:
+  /// Says whether corners are kept, or found whenever they are asked for: what asks for few does without the table.
+  enum class Corners { kept, found };
   /// \throw Cancelled.
-  Unfolding(const Mesh& mesh, int threads, const JobStage& stage);
+  Unfolding(const Mesh& mesh, int threads, const JobStage& stage, Corners corners = Corners::kept);
   const Mesh& mesh() const { return *mesh_; }
-  const Vec2& apex(Index h) const { return apexes_[h]; }
+  Vec2 apex(Index h) const {
+    if (apexes_.empty()) [[unlikely]]
+      return unfold(*mesh_, h).apex;
+    return apexes_[h];
+  }
   /// UnfoldedFace::to_end.
   double to_end(Index h) const {
     const Index right = Mesh::next(h);
     const double base = mesh_->length(h), side = mesh_->length(right);
-    if (!is_needle(base, mesh_->length(Mesh::prev(h)), side)) return base - apexes_[h].x();
-    return apexes_[right].x() * (side / base);
+    if (!is_needle(base, mesh_->length(Mesh::prev(h)), side)) return base - apex(h).x();
+    return apex(right).x() * (side / base);
   }
   /// Surface angle of h at its origin: counter-clockwise from first_halfedge, 0 to total_angle, radians.
   const double& polar(Index h) const { return polars_[h]; }
