@@ -118,7 +118,7 @@ Cancelled
 
 Notes
 -----
-Time grows with V / parts times the windows of a disk, and, for a fiftieth of the whole, with V.)";
+Time grows with V / parts times the windows of a disk, and, for a tenth of the whole, with V.)";
 
 constexpr const char* k_across_doc =
     R"(Return those of a part's arcs that lead into another part, as `unite_arcs` takes them.

@@ -1406,7 +1406,7 @@ def find_arcs(
 
     Notes
     -----
-    Time grows with V / parts times the windows of a disk, and, for a fiftieth of the whole, with V.
+    Time grows with V / parts times the windows of a disk, and, for a tenth of the whole, with V.
     """
 
 def arcs_across(arcs: _Bytes, part: SupportsIndex) -> bytes:
