@@ -24,8 +24,8 @@
 namespace saddleback {
 namespace {
 
-// Shares of the time, until then: angles unfolded, nodes ordered, paths bounded.
-constexpr double k_unfolded = 0.04, k_ordered = 0.06, k_bounded = 0.1;
+// Shares of the time, until then: nodes ordered, paths bounded.
+constexpr double k_ordered = 0.02, k_bounded = 0.06;
 // And of the rest: tables laid, the first search.
 constexpr double k_laid = 0.1, k_searched = 0.9;
 // Rings of LaidNodes. From an eighth of the blocks windows went further than 6, from one in 300 further than 12: for
@@ -154,8 +154,8 @@ PartBytes find_arcs(const Mesh& mesh, Index part, Index parts, const SaddleVerte
   header.first_node = range.first;
   header.node_count = range.count;
 
-  const Unfolding unfolding(mesh, options.threads, stage.part(0, k_unfolded), Unfolding::Corners::found);
-  const NodeOrder order(mesh, options.threads, stage.part(k_unfolded, k_ordered));
+  const Unfolding unfolding(mesh);
+  const NodeOrder order(mesh, options.threads, stage.part(0, k_ordered));
   const ArcCodec codec(
       mesh.vertex_count(), mesh.mean_edge_length(),
       path_bounds(mesh, order.nodes, order.vertices, options.threads, stage.part(k_ordered, k_bounded)));

@@ -130,7 +130,7 @@ WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, const
                        std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                        const JobStage& stage)
     : mesh(unfolding, edges, laid, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
-      sectors(edges, unfolding, vertices, threads, stage.part(k_with_mesh, 1)),
+      sectors(edges, unfolding.mesh(), vertices, threads, stage.part(k_with_mesh, 1)),
       strips(unfolding, {edges.edge_of.data(), edges.edge_of.size()}, nodes, mesh.unit()) {}
 
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,

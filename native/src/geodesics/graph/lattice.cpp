@@ -48,8 +48,11 @@ class Hubs {
     for (Index h = 0; h < mesh.halfedge_count(); ++h)
       if (++counts[mesh.from(h)] == k_many) directions_[mesh.from(h)] = {};
     for (auto& [vertex, directions] : directions_) {
-      for (const Index out : outgoing(mesh, vertex)) directions.push_back(unfolding.polar(out));
-      std::ranges::sort(directions);
+      double direction = 0;
+      for (const Index out : outgoing(mesh, vertex)) {
+        directions.push_back(direction);
+        direction += mesh.corner_angle(out);
+      }
     }
   }
   /// Calls use(direction) for edges out of a vertex: of a hub for those next to straight on from `back`.

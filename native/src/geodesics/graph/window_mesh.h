@@ -109,7 +109,7 @@ class FanMesh {
 class WaveSectors {
  public:
   /// `vertices` of the nodes. \throw Cancelled.
-  WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices, int threads,
+  WaveSectors(const NodeEdges& edges, const Mesh& mesh, std::span<const Index> vertices, int threads,
               const JobStage& stage);
 
   float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin

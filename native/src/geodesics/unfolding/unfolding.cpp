@@ -19,9 +19,9 @@ UnfoldedFace unfold(const Mesh& mesh, Index h) {
   return {{(to - from).dot(apex - from) / base, off}, (from - to).dot(apex - to) / base};
 }
 
-Unfolding::Unfolding(const Mesh& mesh, int threads, const JobStage& stage, Corners corners)
-    : mesh_(&mesh), apexes_(corners == Corners::kept ? mesh.halfedge_count() : 0), polars_(mesh.halfedge_count()) {
-  parallel_for(static_cast<Index>(apexes_.size()), threads, 4096, [&](Index h, int) {
+Unfolding::Unfolding(const Mesh& mesh, int threads, const JobStage& stage)
+    : mesh_(&mesh), apexes_(mesh.halfedge_count()), polars_(mesh.halfedge_count()) {
+  parallel_for(mesh.halfedge_count(), threads, 4096, [&](Index h, int) {
     stage.check();
     apexes_[h] = unfold(mesh, h).apex;
   });
@@ -33,6 +33,13 @@ Unfolding::Unfolding(const Mesh& mesh, int threads, const JobStage& stage, Corne
       angle += mesh.corner_angle(h);
     }
   });
+}
+
+double Unfolding::sum_to(Index h) const {
+  double angle = 0;
+  for (Index other = mesh_->first_halfedge(mesh_->from(h)); other != h; other = mesh_->rotate(other))
+    angle += mesh_->corner_angle(other);
+  return angle;
 }
 
 }  // namespace saddleback

@@ -26,10 +26,10 @@ inline bool is_needle(double base, double left, double right) {
 /// and v1 on the positive x axis, and in which direction h leaves v0.
 class Unfolding {
  public:
-  /// Says whether corners are kept, or found whenever they are asked for: what asks for few does without the table.
-  enum class Corners { kept, found };
-  /// \throw Cancelled.
-  Unfolding(const Mesh& mesh, int threads, const JobStage& stage, Corners corners = Corners::kept);
+  /// Keeps both in tables. \throw Cancelled.
+  Unfolding(const Mesh& mesh, int threads, const JobStage& stage);
+  /// Finds either whenever it is asked for: what asks for few does without tables.
+  explicit Unfolding(const Mesh& mesh) : mesh_(&mesh) {}
   const Mesh& mesh() const { return *mesh_; }
   Vec2 apex(Index h) const {
     if (apexes_.empty()) [[unlikely]]
@@ -44,15 +44,21 @@ class Unfolding {
     return apex(right).x() * (side / base);
   }
   /// Surface angle of h at its origin: counter-clockwise from first_halfedge, 0 to total_angle, radians.
-  const double& polar(Index h) const { return polars_[h]; }
+  /// O(1) by the tables, O(degree) without.
+  double polar(Index h) const {
+    if (polars_.empty()) [[unlikely]]
+      return sum_to(h);
+    return polars_[h];
+  }
   std::span<const double> polars() const { return polars_; }
   /// Returns the same for the edge of h seen from to(h): also where h has no twin.
   double polar_of_reverse(Index h) const {
     const Index t = mesh_->twin(h);
-    return t == k_none ? mesh_->total_angle(mesh_->to(h)) : polars_[t];
+    return t == k_none ? mesh_->total_angle(mesh_->to(h)) : polar(t);
   }
 
  private:
+  double sum_to(Index h) const;
   const Mesh* mesh_;
   LargeArray<Vec2> apexes_;
   LargeArray<double> polars_;
