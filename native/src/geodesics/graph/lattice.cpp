@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "mesh/tables/outgoing.h"
@@ -39,41 +40,55 @@ struct GoingOn {
   bool is_straight(double angle) const { return bent <= angle && turned < angle; }
 };
 
-/// The directions of the edges out of hubs, ascending: from each rim vertex of a fan an edge leads there.
+/// The directions of the edges out of hubs: from each rim vertex of a fan an edge leads there.
 class Hubs {
  public:
   explicit Hubs(const Unfolding& unfolding) : unfolding_(unfolding) {
     const Mesh& mesh = unfolding.mesh();
     std::vector<Index> counts(mesh.vertex_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h)
-      if (++counts[mesh.from(h)] == k_many) directions_[mesh.from(h)] = {};
-    for (auto& [vertex, directions] : directions_) {
+      if (++counts[mesh.from(h)] == k_many) hubs_[mesh.from(h)] = {};
+    for (auto& [vertex, hub] : hubs_) {
       double direction = 0;
       for (const Index out : outgoing(mesh, vertex)) {
-        directions.push_back(direction);
+        hub.ascending.push_back(direction);
+        hub.of_halfedges.emplace_back(out, direction);
         direction += mesh.corner_angle(out);
       }
+      std::ranges::sort(hub.of_halfedges);
     }
+  }
+  /// Unfolding::polar_of_reverse. O(log degree).
+  double back(Index h) const {
+    const Index twin = unfolding_.mesh().twin(h);
+    const auto hub = hubs_.empty() || twin == k_none ? hubs_.end() : hubs_.find(unfolding_.mesh().to(h));
+    if (hub == hubs_.end()) return unfolding_.polar_of_reverse(h);
+    return std::ranges::lower_bound(hub->second.of_halfedges, std::pair(twin, 0.0))->second;
   }
   /// Calls use(direction) for edges out of a vertex: of a hub for those next to straight on from `back`.
   template <class Use>
   void for_each_ahead(Index vertex, double back, Use&& use) const {
-    const auto hub = directions_.empty() ? directions_.end() : directions_.find(vertex);
-    if (hub == directions_.end()) {
+    const auto hub = hubs_.empty() ? hubs_.end() : hubs_.find(vertex);
+    if (hub == hubs_.end()) {
       for (const Index out : outgoing(unfolding_.mesh(), vertex)) use(unfolding_.polar(out));
       return;
     }
     for (const double ahead : {back - std::numbers::pi, back + std::numbers::pi}) {
-      const auto after = std::ranges::lower_bound(hub->second, ahead);
-      if (after != hub->second.end()) use(*after);
-      if (after != hub->second.begin()) use(*std::prev(after));
+      const std::vector<double>& ascending = hub->second.ascending;
+      const auto after = std::ranges::lower_bound(ascending, ahead);
+      if (after != ascending.end()) use(*after);
+      if (after != ascending.begin()) use(*std::prev(after));
     }
   }
 
  private:
   static constexpr Index k_many = 64;
+  struct Hub {
+    std::vector<double> ascending;
+    std::vector<std::pair<Index, double>> of_halfedges;  ///< in their order
+  };
   const Unfolding& unfolding_;
-  std::unordered_map<Index, std::vector<double>> directions_;
+  std::unordered_map<Index, Hub> hubs_;
 };
 
 GoingOn going_on(const Unfolding& unfolding, const Hubs& hubs, Index h) {
@@ -82,7 +97,7 @@ GoingOn going_on(const Unfolding& unfolding, const Hubs& hubs, Index h) {
   if (mesh.is_boundary(vertex)) return {};
   GoingOn best{std::abs(mesh.total_angle(vertex) - 2 * std::numbers::pi)};
   if (best.bent > k_nearly_straight) return best;
-  const double back = unfolding.polar_of_reverse(h);
+  const double back = hubs.back(h);
   hubs.for_each_ahead(vertex, back, [&](double direction) {
     const double turn = std::abs(direction - back);
     best.turned = std::min(best.turned, std::abs(turn - std::numbers::pi));
@@ -96,12 +111,13 @@ struct Spoke {
 };
 
 /// Returns the edges out of a vertex, counter-clockwise. O(degree)
-std::vector<Spoke> spokes_of(const Unfolding& unfolding, Index vertex) {
-  const Mesh& mesh = unfolding.mesh();
+std::vector<Spoke> spokes_of(const Mesh& mesh, Index vertex) {
   std::vector<Spoke> spokes;
   const Index first = mesh.first_halfedge(vertex);
+  double angle = 0;
   for (Index h = first; h != k_none;) {
-    spokes.push_back({unfolding.polar(h), mesh.length(h)});
+    spokes.push_back({angle, mesh.length(h)});
+    angle += mesh.corner_angle(h);
     const Index last = Mesh::prev(h);
     h = mesh.rotate(h);
     if (h == k_none) spokes.push_back({mesh.total_angle(vertex), mesh.length(last)});
@@ -113,9 +129,8 @@ std::vector<Spoke> spokes_of(const Unfolding& unfolding, Index vertex) {
 /// Tells whether two edges go straight on along a side on which all others reach as far: a flat strip one cell wide, as
 /// between the rims of a lathed cylinder and between the two inmost rows of a torus. Along it the same detour follows
 /// again and again.
-bool is_beside_strip(const Unfolding& unfolding, Index vertex) {
-  const Mesh& mesh = unfolding.mesh();
-  const std::vector<Spoke> spokes = spokes_of(unfolding, vertex);
+bool is_beside_strip(const Mesh& mesh, Index vertex) {
+  const std::vector<Spoke> spokes = spokes_of(mesh, vertex);
   const std::size_t count = spokes.size(), most = mesh.is_boundary(vertex) ? 1 : count;
   for (std::size_t begin = 0; begin < most; ++begin) {
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
@@ -149,7 +164,7 @@ Surroundings surroundings_of(const Unfolding& unfolding, const Hubs& hubs, Index
     shortest = std::min(shortest, mesh.length(h));
     longest = std::max(longest, mesh.length(h));
   }
-  const bool is_strip = is_beside_strip(unfolding, vertex);
+  const bool is_strip = is_beside_strip(mesh, vertex);
   if (2 * nearly_straight < edges && !is_strip) return {};
   return {longest < k_stretched * shortest ? Lattice::even : Lattice::stretched, 2 * straight < edges && !is_strip};
 }
