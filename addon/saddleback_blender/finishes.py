@@ -34,6 +34,12 @@ def ground_of(look: str) -> bpy.types.Material | None:
     return nodes.find_material(kind) or nodes.new_colored(name, kind, (*linear_of(LOOKS[look].ground), 1.0), 0.8)
 
 
+def has_colors(look: str) -> bool:
+    """Tells whether what a look makes has many colors."""
+    finish = finish_of(look)
+    return finish is not None and len(finish.colors) > 1
+
+
 def material_of(look: str, otherwise: Callable[[], bpy.types.Material]) -> bpy.types.Material:
     """The material of a look, made where the file has none; another where the look has no finish."""
     finish = finish_of(look)

@@ -74,6 +74,7 @@ class State:
         self.line = ""
         self.figures: list[str] = []
         self.written: set[str] = set()  # objects for which runs wrote what Auto Update has not seen yet
+        self.colored: set[int] = set()  # 3D views, by their pointers, that a look made show colors of attributes
         self.live: dict[str, str] = {}  # by object: what Auto Update is doing, or why it waits
         self.live_running: tuple[str, int] | None = None  # the object whose run goes on, and how many percent are done
         self.live_asked: set[str] = set()  # objects whose Auto Update was switched on just now

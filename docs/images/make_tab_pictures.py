@@ -24,7 +24,7 @@ import numpy as np
 import scenarios
 
 # The rows of the sidebar, from the top, that show a part each.
-PARTS = {"top": (0, 346), "cells": (346, 612), "outputs": (612, 822), "more": (822, 1008)}
+PARTS = {"top": (0, 318), "cells": (318, 472), "outputs": (472, 657), "more": (657, 840)}
 
 
 def crop(source: Path, target: Path, left: int, width: int, rows: tuple[int, int]) -> None:

@@ -18,7 +18,8 @@ from saddleback_blender.core.surfaces.normals import normals_at
 from saddleback_blender.ops.look_presets import read_preset
 
 ROLES = {
-    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "STIPPLE": "centers", "REMESH": "dual", "BANDS": "isolines",
+    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "STIPPLE": "centers", "REMESH": "dual", "QUADS": "dual",
+    "BANDS": "isolines",
     "SCALES": "shapes", "FEATHERS": "shapes", "STUDS": "shapes", "MOSAIC": "shapes",
 }  # fmt: skip
 
@@ -259,3 +260,40 @@ def test_a_tip_stands_higher_than_a_root_by_the_tilt():
     assert normals.reshape(-1, 3)[:, 2] == pytest.approx(np.cos(tilt), abs=1e-4)
     bpy.ops.saddleback.distribute(shapes="SCALES", count=40)
     assert item.saddleback.distribute.overlap == 0.0
+
+
+def test_where_solid_view_shows_attributes_what_has_none_has_its_material_color():
+    item = torus()
+    apply("STUDS")
+    assert item.color[:] == bpy.data.materials["Saddleback Studs Ground"].diffuse_color[:]
+    apply("LAMP")
+    assert item.color[:] == (1, 1, 1, 1)
+    (shell,) = outputs_of(item)
+    assert shell.color[:] == bpy.data.materials["Saddleback Lamp"].diffuse_color[:]
+    item.color = 1, 0, 0, 1
+    apply("STUDS")
+    bpy.ops.saddleback.clear()
+    assert item.color[:] == (1, 0, 0, 1)
+
+
+def test_an_image_is_stippled_in_one_go_or_not_at_all(tmp_path):
+    image = bpy.data.images.new("Half", 40, 20)
+    pixels = np.ones((20, 40, 4), np.float32)
+    pixels[:, :20, :3] = 0.0
+    image.pixels.foreach_set(pixels.ravel())
+    image.filepath_raw, image.file_format = str(tmp_path / "half.png"), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+    assert bpy.ops.saddleback.stipple_image(filepath=str(tmp_path / "half.png"), count=300) == {"FINISHED"}
+    sheet = bpy.context.active_object
+    assert tuple(sheet.dimensions) == pytest.approx((2, 1, 0)) and sheet.select_get()
+    (dots,) = outputs_of(sheet)
+    places = positions(dots.data)
+    assert len(places) == 300 and (places[:, 0] < 0.02).all()  # where it is dark
+    before = len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.images)
+    (tmp_path / "text.png").write_text("no image")
+    for name in ("text.png", "missing.png", ""):
+        with pytest.raises(RuntimeError, match="image"):
+            bpy.ops.saddleback.stipple_image(filepath=str(tmp_path / name) if name else "")
+        assert (len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.images)) == before
+        assert bpy.context.active_object == sheet

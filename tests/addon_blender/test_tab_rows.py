@@ -47,6 +47,8 @@ class Layout:
     def template_list(self, *_, **__):
         pass
 
+    popover = template_list
+
     def label(self, **_):
         pass
 

@@ -7,6 +7,7 @@ A scenario is a generator that yields the seconds until Blender calls it again; 
 and draws. It returns what the test outside looks at. SADDLEBACK_UI_FOLDER gets report.json and the screenshots.
 """
 
+import importlib
 import json
 import os
 import sys
@@ -20,8 +21,9 @@ sys.path[:0] = [str(REPOSITORY), str(REPOSITORY / "addon"), str(HERE), str(HERE.
 sys.path += [path for path in os.environ.get("SADDLEBACK_PYTHONPATH", "").split(os.pathsep) if path]
 
 import bpy
-import scenarios
 from hands import Screen
+
+PLAYS = importlib.import_module(os.environ.get("SADDLEBACK_UI_PLAYS", "scenarios"))
 
 
 def play(plays):
@@ -48,7 +50,7 @@ def play(plays):
         sys.stdout.flush()
         os._exit(0)  # quitting in order may ask to save, and nothing of this Blender is to be kept
 
-    bpy.app.timers.register(tick, first_interval=1.0)
+    bpy.app.timers.register(tick, first_interval=1.0, persistent=True)
 
 
 def main():
@@ -56,8 +58,8 @@ def main():
     bpy.context.preferences.system.viewport_aa = "OFF"  # a quarter of the time for each redraw in software
     bpy.context.preferences.view.show_splash = False
     bpy.context.preferences.view.smooth_view = 0  # no view glides while a run begins
-    scenarios.prepare()
-    play(scenarios.in_order(Screen()))
+    PLAYS.prepare()
+    play(PLAYS.in_order(Screen()))
 
 
 main()

@@ -3,6 +3,7 @@
 
 import os
 import time
+from itertools import product
 from pathlib import Path
 
 import bpy
@@ -61,20 +62,23 @@ class Screen:
 
     def find_button(self, command):
         """Where in the sidebar an operator's button is, by its command."""
-        return (yield from self._find("copy_python_command_button", lambda copied: copied.startswith(command)))
+        is_it = lambda copied: copied.startswith(command)  # noqa: E731 - asked again and again
+        is_pair = "apply_look" in command  # two in a row
+        return (yield from self._find("copy_python_command_button", is_it, is_pair))
 
     def find_switch(self, name):
         """Where in the sidebar a property is, by the end of its path."""
         return (yield from self._find("copy_data_path_button", lambda copied: copied.endswith(name)))
 
-    def _find(self, copy, is_it):
+    def _find(self, copy, is_it, is_pair=False):
         """A place just below the first at which what Blender copies of what is under the mouse is sought."""
         clipboard = bpy.context.window_manager
-        left, bottom = self.sidebar.x, self.sidebar.y
-        x = left + self.sidebar.width // 2 - 20
+        left, bottom, width = self.sidebar.x, self.sidebar.y, self.sidebar.width
+        # Down the middle first; then where buttons stand side by side.
+        columns = [left + across for across in (width // 2 - 20, width // 5, width * 2 // 3, width - 45)]
         self.move(self.view.x + 200, self.view.y + 300)
         yield 12 * FRAME  # until Blender has left what the mouse was over before
-        for y in range(bottom + self.sidebar.height - 8, bottom + 8, -9):
+        for x, y in product(columns[is_pair:], range(bottom + self.sidebar.height - 8, bottom + 8, -9)):
             self.move(x, y)
             yield FRAME
             clipboard.clipboard = ""

@@ -1,79 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tab in a Blender with a window: one Blender plays all scenarios (scenarios.py), each test looks at one."""
 
-import json
-import os
-import shutil
-import signal
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
-
 import pytest
 
-HERE = Path(__file__).resolve().parent
-REPOSITORY = HERE.parents[1]
-BLENDER = os.environ.get("SADDLEBACK_BLENDER", "blender")
+from tests.addon_ui.runs import play, seen
+
 PATIENCE = 420  # seconds for everything, on a slow machine that draws in software
 
 
 @pytest.fixture(scope="module")
-def display():
-    """A screen that nobody sees."""
-    assert shutil.which("Xvfb"), "these tests need Xvfb; tests/run installs it"
-    read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "+extension", "GLX", "-nolisten", "tcp"]
-    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as stream:
-        number = stream.readline().strip()
-    assert number, "Xvfb did not start"
-    yield f":{number}"
-    server.terminate()
-    server.wait(20)
-
-
-@pytest.fixture(scope="module")
-def report(display):
+def report():
     """What the scenarios saw, by name."""
-    folder = Path(os.environ.get("SADDLEBACK_UI_FOLDER") or tempfile.mkdtemp(prefix="saddleback-ui-"))
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "report.json").unlink(missing_ok=True)
-    profile = tempfile.mkdtemp(prefix="saddleback-profile-")
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
-    environment |= {
-        "DISPLAY": display,
-        "LIBGL_ALWAYS_SOFTWARE": "1",
-        "BLENDER_USER_RESOURCES": profile,
-        "SADDLEBACK_UI_FOLDER": str(folder),
-    }
-    environment.setdefault("SADDLEBACK_PYTHONPATH", str(REPOSITORY / "build/python"))
-    command = [BLENDER, "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", "1280", "800"]
-    log = folder / "blender.log"
-    with log.open("w") as stream:
-        blender = subprocess.Popen(
-            [*command, "--python-exit-code", "9", "--python", str(HERE / "driver.py")],
-            env=environment, stdout=stream, stderr=subprocess.STDOUT, start_new_session=True,
-        )  # fmt: skip
-        try:
-            blender.wait(PATIENCE)
-        except subprocess.TimeoutExpired:
-            os.killpg(blender.pid, signal.SIGKILL)
-            blender.wait()
-    shutil.rmtree(profile, ignore_errors=True)
-    result = folder / "report.json"
-    assert result.exists(), f"Blender ended without a report ({blender.returncode}):\n{log.read_text()[-4000:]}"
-    # Errors in draw functions reach only the log.
-    text = log.read_text()
-    assert "Traceback" not in text, text[-4000:]
-    print(f"screenshots: {folder}", file=sys.stderr)
-    return json.loads(result.read_text())
-
-
-def seen(report, name):
-    assert "error" not in report[name], report[name]["error"]
-    return report[name]["seen"]
+    return play("scenarios", 1280, 800, PATIENCE)
 
 
 def test_the_tab_opens_and_its_panels_draw(report):

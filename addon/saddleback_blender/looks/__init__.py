@@ -38,6 +38,7 @@ class Look:
     settings: dict[str, Any] = field(default_factory=dict)
     finish: Finish | None = None
     ground: str = ""  # sRGB: the body's color between what lies on it, where it has no material of its own
+    beside: str = ""  # the look whose button it stands beside, as an icon
     hides_source: bool = False  # which would lie in or on what is made
 
 
@@ -104,6 +105,12 @@ LOOKS: dict[str, Look] = {
     "REMESH": Look(
         "Remesh", "A new mesh of even triangles with the same layers and materials", "MOD_REMESH", "tessellate",
         {"count": 2000, "iterations": 60, "make_edges": False, "make_dual": True}, hides_source=True,
+    ),
+    "QUADS": Look(
+        "Quads", "A new mesh of quads: triangles cut into three each, with all vertices on the surface", "MESH_GRID",
+        "tessellate",
+        {"count": 700, "iterations": 60, "make_edges": False, "make_dual": True, "dual_faces": "QUADS"},
+        beside="REMESH", hides_source=True,
     ),
     "BANDS": Look(
         "Bands", "Colors and lines by the distance along the surface", "IPO_ELASTIC", "distance",

@@ -21,6 +21,7 @@ from . import (
     path,
     repair,
     sites,
+    stipple_image,
     tessellate,
     voronoi_2d,
 )
@@ -34,6 +35,7 @@ CLASSES = (
     *tessellate.CLASSES,
     *sites.CLASSES,
     *voronoi_2d.CLASSES,
+    *stipple_image.CLASSES,
     *direction_field.CLASSES,
     *distribute.CLASSES,
     *bake.CLASSES,

@@ -21,12 +21,14 @@ from ..bridge.outputs.lifting import lift_lying
 from ..bridge.outputs.out_collection import hide_output, outputs_of, remove_output
 from ..bridge.outputs.out_looks import ROLES, remove_look, set_stage
 from ..bridge.outputs.output_surface import has_own_faces
+from ..bridge.outputs.solid_colors import show_colors
 from ..bridge.tokens import SOURCE, layer_of
 from ..core import native, runs
 from ..core.errors import BadInputError
 from ..core.lengths import told_lengths, world_lengths
 from ..core.progress import Progress
 from ..core.requests import Surface
+from ..finishes import has_colors
 from ..looks import LOOKS, NO_LOOK
 from ..props import PROPERTIES, Settings, existing_group, fill_operator, keep_texts, note_call
 from ..props.kinds import switch
@@ -288,6 +290,8 @@ class SurfaceOperator(PolledOperator):
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
+        if self._is_watched and has_colors(getattr(self, "look", NO_LOOK)):
+            show_colors(context.space_data)
         self._is_filled = True
         jobs.state.written.add(source.name)
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"

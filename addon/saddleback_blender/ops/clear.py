@@ -11,6 +11,8 @@ from ..bridge.outputs import hand_edits
 from ..bridge.outputs.out_collection import clear_outputs
 from ..bridge.outputs.out_looks import BY_HAND, hide, is_hidden, set_stage, show
 from ..bridge.outputs.preview import hide_preview
+from ..bridge.outputs.solid_colors import BY_ATTRIBUTE, BY_MATERIAL, hide_colors, is_colored
+from ..bridge.tokens import ROLE
 from ..core.errors import BadInputError
 from ..looks import NO_LOOK
 from ..props import forget_texts
@@ -44,6 +46,8 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
             set_stage(source, NO_LOOK)
             removed = hide_preview(source) + clear_outputs(context, source)
             forget_texts(source)
+        if not any(ROLE in item for item in bpy.data.objects):
+            hide_colors(context.space_data)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = ""
@@ -78,4 +82,24 @@ class SADDLEBACK_OT_hide_source(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (SADDLEBACK_OT_clear, SADDLEBACK_OT_hide_source)
+class SADDLEBACK_OT_show_colors(bpy.types.Operator):
+    """Shows colors in Solid view."""
+
+    bl_idname = "saddleback.show_colors"
+    bl_label = "Show Colors"
+    bl_description = "Show the color of each cell and shape in Solid view, or the one of each material"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is a view."""
+        return isinstance(context.space_data, bpy.types.SpaceView3D)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """It is the view's own setting, as Viewport Shading has it."""
+        space = context.space_data
+        space.shading.color_type = BY_MATERIAL if is_colored(space) else BY_ATTRIBUTE
+        return {"FINISHED"}
+
+
+CLASSES = (SADDLEBACK_OT_clear, SADDLEBACK_OT_hide_source, SADDLEBACK_OT_show_colors)

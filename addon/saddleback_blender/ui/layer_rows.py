@@ -54,6 +54,7 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
     row = column.row(align=True)
     row.prop(props, "region", text="")
     row.prop(props, "mirror_x", text="", icon="MOD_MIRROR")
+    row.popover("SADDLEBACK_PT_barriers", text="", icon="MOD_EDGESPLIT")
     if props.region == "VERTEX_GROUP":
         column.prop_search(props, "region_name", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
     elif props.region == "ATTRIBUTE":
@@ -62,6 +63,14 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
         column.prop_search(props, "region_name", item.data, "materials", text="Material", icon="MATERIAL")
     elif props.region == "FACES":
         column.operator("saddleback.region_from_selection", icon="FACESEL")
+
+
+def draw_barriers(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
+    """What the pattern of the active layer does not cross."""
+    props = item.saddleback
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
     column.prop(props, "barriers")
     if props.barriers == "ATTRIBUTE":
         row = column.row(align=True)

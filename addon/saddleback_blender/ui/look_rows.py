@@ -21,8 +21,21 @@ class SADDLEBACK_PT_look_presets(PresetPanel, bpy.types.Panel):
 
 
 def draw_looks(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
-    """A button for each look; the one that the object has is pressed."""
+    """A button for each look, some with another beside it; the one that the object has is pressed."""
     grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for key, look in LOOKS.items():
-        is_on = getattr(item.saddleback, look.operator).look == key
-        grid.operator("saddleback.apply_look", text=look.label, icon=look.icon, depress=is_on).look = key
+        if look.beside:
+            continue
+        row = grid.row(align=True)
+        others = [name for name in LOOKS if LOOKS[name].beside == key]
+        has_more = bool(others) or key == "STIPPLE"
+        _draw_look(row, item, key, look.label, "NONE" if has_more else look.icon)  # no room for both
+        for other in others:
+            _draw_look(row, item, other, "", LOOKS[other].icon)
+        if key == "STIPPLE":
+            row.operator("saddleback.stipple_image", text="", icon="IMAGE_DATA")
+
+
+def _draw_look(layout: bpy.types.UILayout, item: bpy.types.Object, key: str, text: str, icon: str) -> None:
+    is_on = getattr(item.saddleback, LOOKS[key].operator).look == key
+    layout.operator("saddleback.apply_look", text=text, icon=icon, depress=is_on).look = key

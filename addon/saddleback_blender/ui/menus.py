@@ -14,6 +14,7 @@ PAGES = {
     "distance": "distance.md",
     "path": "distance.md",
     "voronoi_2d": "voronoi_2d.md",
+    "stipple_image": "voronoi_2d.md",
     "direction_field": "direction_field.md",
     "draw_strokes": "direction_field.md",
     "add_singularity": "direction_field.md",
@@ -87,6 +88,11 @@ def draw_menu(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.menu(SADDLEBACK_MT_object.bl_idname)
 
 
+def draw_image_entry(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Draws the entry in the menu Add > Image."""
+    menu.layout.operator("saddleback.stipple_image", icon="STICKY_UVS_DISABLE")
+
+
 def manual_map() -> tuple[str, tuple[tuple[str, str], ...]]:
     """Returns where the pages are, and the page of each operator and setting."""
     operators = tuple((f"bpy.ops.saddleback.{name}*", page) for name, page in PAGES.items())
@@ -98,11 +104,13 @@ def register() -> None:
     """Makes everything of this module known to Blender."""
     bpy.utils.register_class(SADDLEBACK_MT_object)
     bpy.types.VIEW3D_MT_object.append(draw_menu)
+    bpy.types.VIEW3D_MT_image_add.append(draw_image_entry)
     bpy.utils.register_manual_map(manual_map)
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
     bpy.utils.unregister_manual_map(manual_map)
+    bpy.types.VIEW3D_MT_image_add.remove(draw_image_entry)
     bpy.types.VIEW3D_MT_object.remove(draw_menu)
     bpy.utils.unregister_class(SADDLEBACK_MT_object)

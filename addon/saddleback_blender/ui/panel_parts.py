@@ -49,7 +49,7 @@ def draw_button(
     A button that is gray under the mouse stays dead in Blender after it could be pressed again; a new one does not.
     """
     row = layout.row()
-    row.scale_y = 1.4
+    row.scale_y = 1.15
     if context.window_manager.saddleback_running:
         compat.draw_progress(row, context.window_manager)
     else:
@@ -58,8 +58,11 @@ def draw_button(
             row.operator(live, text="", icon="PLAY")
 
 
-def draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str) -> None:
-    """The run that goes on; else the way out of an error, or what the last run of this kind made of the object."""
+def draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str, has_info: bool = False) -> None:
+    """The run that goes on; else the way out of an error, or what the last run of this kind made of the object.
+
+    Lengths are told here, too, unless there is a panel Info.
+    """
     manager, item = context.window_manager, active_object(context)
     is_last = manager.saddleback_kind == kind
     if manager.saddleback_running:
@@ -75,8 +78,10 @@ def draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str
         row.scale_y = 1.3
         row.operator("saddleback.repair", text="Repair Mesh", icon="TOOL_SETTINGS")
     else:
-        for number, line in enumerate(getattr(item.saddleback, kind).told.splitlines()):
-            draw_text(layout, context, line, "BLANK1" if number else "CHECKMARK")
+        lines = getattr(item.saddleback, kind).told.splitlines()
+        for number, line in enumerate(lines[:1] if has_info else lines):
+            text = line if number else line.removeprefix(f"'{item.name}': ")  # which stands above
+            draw_text(layout, context, text, "BLANK1" if number else "CHECKMARK")
 
 
 def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str) -> None:

@@ -8,6 +8,7 @@ import bpy
 from .. import compat
 from ..bridge.inputs.source import active_object, why_not
 from ..bridge.outputs.out_looks import is_hidden
+from ..bridge.outputs.solid_colors import is_colored
 from . import distance_panels, layer_rows, live_rows, look_rows, plane_panels, rows, shape_panels, tessellate_panels
 from .panel_parts import (
     SaddlebackAdvancedPanel,
@@ -43,6 +44,7 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         problem = why_not(context)
         if problem:
             draw_text(layout, context, problem, "INFO")
+            layout.operator("saddleback.stipple_image", icon="IMAGE_DATA")
             return
         item = active_object(context)
         column = layout.column()
@@ -58,12 +60,22 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         if context.window_manager.saddleback_running:
             compat.draw_progress(row, context.window_manager)
         else:
+            if context.space_data.shading.type == "SOLID":  # which shows colors of cells and shapes in one of its ways
+                row.operator("saddleback.show_colors", text="", icon="COLOR", depress=is_colored(context.space_data))
             row.operator("saddleback.clear", text="", icon="TRASH")
             icon = "HIDE_ON" if is_hidden(item) else "HIDE_OFF"
             row.operator("saddleback.hide_source", text="", icon=icon, depress=is_hidden(item))
-        shading = context.space_data.shading
-        if shading.type == "SOLID":  # which shows the colors of cells and shapes in one of its ways only
-            layout.prop(shading, "color_type", text="Color")
+
+
+class SADDLEBACK_PT_barriers(SaddlebackPanel, bpy.types.Panel):
+    """Lines that the pattern of the layer does not cross."""
+
+    bl_region_type, bl_category = "HEADER", ""  # a popover of the tab has its place nowhere else
+    bl_label = "Barriers"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layer_rows.draw_barriers(self.layout, active_object(context))
 
 
 class SADDLEBACK_PT_bake(SaddlebackSubPanel, bpy.types.Panel):
@@ -114,6 +126,7 @@ CLASSES = (
     look_rows.SADDLEBACK_PT_look_presets,
     layer_rows.SADDLEBACK_UL_layers,
     SADDLEBACK_PT_main,
+    SADDLEBACK_PT_barriers,
     *tessellate_panels.CLASSES,
     *distance_panels.CLASSES,
     *plane_panels.CLASSES,

@@ -19,10 +19,13 @@ DENSITY_LISTS = {
 
 def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     """Draws where the cells' centers come from, and how even they become."""
-    layout.prop(settings, "sites_source")
     if is_placed(settings):
-        layout.prop(settings, "count" if settings.sites_source == "COUNT" else "cell_size")
+        row = layout.row(align=True)
+        row.use_property_split = False
+        row.prop(settings, "sites_source", text="")
+        row.prop(settings, "count" if settings.sites_source == "COUNT" else "cell_size", text="")
     else:
+        layout.prop(settings, "sites_source")
         if settings.sites_source == "OBJECT":
             draw_object(layout, settings, "sites_object")
         layout.prop(settings, "relax_sites")
@@ -193,6 +196,11 @@ def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:
         draw_length(layout, settings, "base_height")
     layout.prop(settings, "rib_profile")
     draw_automatic(layout, settings, "shell_faces", zero="All")
+    draw_exports(layout)
+
+
+def draw_exports(layout: bpy.types.UILayout) -> None:
+    """Buttons that save the printable ribs."""
     row = layout.row(align=True)
     row.operator("saddleback.export_stl", icon="EXPORT")
     row.operator("saddleback.export_3mf", icon="EXPORT")

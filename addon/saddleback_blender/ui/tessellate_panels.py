@@ -6,8 +6,11 @@ from __future__ import annotations
 import bpy
 
 from ..bridge.inputs.source import active_object
+from ..bridge.outputs.out_collection import find_output
+from ..bridge.outputs.out_shell import SHELL_ROLE
 from . import rows
 from .panel_parts import SaddlebackAdvancedPanel, SaddlebackSubPanel, draw_button, draw_figures, draw_state
+from .texts import draw_text
 
 HEADER_WIDTH = 7.5  # of a title with a value beside it, at the default width of the sidebar
 
@@ -19,10 +22,13 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = active_object(context).saddleback.tessellate
+        item = active_object(context)
+        settings = item.saddleback.tessellate
         layout = self.split_layout(context)
         draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE", "saddleback.relax_live")
-        draw_state(layout, context, "tessellate")
+        draw_state(layout, context, "tessellate", has_info=True)
+        if find_output(item, SHELL_ROLE) is not None:
+            rows.draw_exports(layout)
         rows.draw_sites(layout.column(), settings)
 
 
@@ -142,14 +148,16 @@ class SADDLEBACK_PT_tessellate_advanced(SaddlebackAdvancedPanel, bpy.types.Panel
 
 
 class SADDLEBACK_PT_info(SaddlebackSubPanel, bpy.types.Panel):
-    """Shows how even the cells are."""
+    """Shows the lengths that were used, and how even the cells are."""
 
     bl_label = "Info"
-    bl_parent_id = "SADDLEBACK_PT_tessellate"
+    bl_parent_id = "SADDLEBACK_PT_tessellate_advanced"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        for line in active_object(context).saddleback.tessellate.told.splitlines()[1:]:
+            draw_text(self.layout, context, line, "BLANK1")
         draw_figures(self.layout, context, "tessellate")
 
 

@@ -83,6 +83,7 @@ def replace_object(
             " ".join(filter(None, (source.name, _layer_name(source, role), role.title()))), data
         )
         item[ROLE], item[NAME] = role, item.name
+        item.color = _color_of(data)
         moved = Matrix.Identity(4)
         given = _names(data)
     else:
@@ -110,6 +111,12 @@ def replace_object(
     item.matrix_basis = moved @ (basis if is_sheared else place)
     data.name = item.name
     return item
+
+
+def _color_of(data: bpy.types.ID) -> tuple[float, ...]:
+    """The first material's color: Solid view shows the object's where it shows attributes and there is none."""
+    materials = [material for material in getattr(data, "materials", ()) if material is not None]
+    return tuple(materials[0].diffuse_color) if materials else (1.0, 1.0, 1.0, 1.0)
 
 
 def mark(item: bpy.types.Object, source: bpy.types.Object, role: str) -> None:

@@ -21,6 +21,7 @@ BEFORE = "saddleback_before_preview_"  # on an object, with a slot's number: the
 
 # Node names, by which a later run finds what it sets; all else of the material is the artist's to change.
 ATTRIBUTE, FARTHEST, SPACING, DARKNESS = "Distance", "Farthest", "Line Spacing", "Line Darkness"
+NO_COLOR = (1.0, 1.0, 1.0, 1.0)  # of objects, as Blender makes them
 LINE_WIDTH = 0.05  # half of it, in spacings
 LINE_DARKNESS = 0.8
 
@@ -61,6 +62,9 @@ def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
         item.data.materials.append(None)
         item[ADDED_SLOT] = True
         item.material_slots[0].link, item.material_slots[0].material = "OBJECT", material
+        if tuple(item.color) == NO_COLOR:  # which Solid view shows where it shows attributes
+            rollback.remember(item, "color")
+            item.color = material.diffuse_color
 
 
 def hide_preview(item: bpy.types.Object, kind: str = KIND) -> bool:
@@ -70,6 +74,9 @@ def hide_preview(item: bpy.types.Object, kind: str = KIND) -> bool:
     if not shown:
         return False
     materials = {slot.material for _, slot in shown}
+    if kind == GROUND and any(tuple(item.color) == tuple(material.diffuse_color) for material in materials):
+        rollback.remember(item, "color")
+        item.color = NO_COLOR
     for number, slot in shown:
         key = f"{BEFORE}{number}"
         slot.link = "OBJECT"
