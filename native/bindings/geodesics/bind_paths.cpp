@@ -3,6 +3,7 @@
 #include "saddleback/geodesics/geodesic_paths.h"
 #include "saddleback/geodesics/log_map.h"
 #include "saddleback/geodesics/polar_coordinates.h"
+#include "saddleback/geodesics/shortened_curve.h"
 #include "saddleback/mesh/feature_curves.h"
 #include "saddleback/mesh/surface_curve.h"
 
@@ -69,6 +70,29 @@ Returns:
 Raises:
     InputError: no sources, a point off the mesh.
     Cancelled: the job was.
+)";
+
+constexpr const char* k_shorten_doc = R"(Pulls a curve tight on the surface, without leaving its homotopy class.
+
+The ends of an open curve stay where they are. A closed curve becomes a closed geodesic, such as the ring about the
+narrowest place of a neck, or contracts to a point where nothing holds it.
+
+Args:
+    curve: a SurfaceCurve.
+    job: progress and cancellation.
+
+Returns:
+    GeodesicPath: straight but at vertices, which it passes with at least pi on either side (but at the boundary). The
+    points of a closed curve are listed once: `SurfaceCurve(mesh, path.surface, closed=True)`. One that contracts is one
+    point, of length 0.
+
+Raises:
+    InputError: no curve.
+    Cancelled: the job was.
+
+Notes:
+    O(faces crossed) a step. As the edge flips of [sharp2020], on the faces themselves; closed curves in a strip of faces
+    by the least value of a convex function.
 )";
 
 constexpr const char* k_log_map_doc = R"(Length and direction of the shortest path to every vertex about a point.
@@ -183,6 +207,13 @@ auto view_of_flags(const std::vector<std::uint8_t> Owner::*member) {
   };
 }
 
+GeodesicPath shorten_curve(const py::object& curve, const py::object& job) {
+  if (!py::isinstance<SurfaceCurve>(curve)) throw InputError("curve: wanted a SurfaceCurve");
+  const auto& given = py::cast<const SurfaceCurve&>(curve);
+  const JobIn token(job);
+  return without_gil([&] { return shortened_curve(given, token); });
+}
+
 void bind_geodesic_paths(py::module_& m) {
   py::class_<GeodesicPaths>(m, "GeodesicPaths", py::module_local(), k_paths_doc)
       .def_property_readonly("points", view_of_member(&GeodesicPaths::points),
@@ -206,6 +237,7 @@ void bind_geodesic_paths(py::module_& m) {
   add_method(m, "SaddleVertexGraph", "paths", &paths_between, py::arg("sources"), py::arg("targets"),
              py::arg("shorten") = false, py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
              k_many_paths_doc);
+  m.def("shorten_curve", &shorten_curve, py::arg("curve"), py::kw_only(), py::arg("job") = py::none(), k_shorten_doc);
 }
 
 LogMap log_map_of(const SaddleVertexGraph& graph, const py::object& center, const py::object& radius,

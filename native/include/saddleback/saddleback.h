@@ -19,6 +19,7 @@
 #include "saddleback/geodesics/log_map.h"
 #include "saddleback/geodesics/polar_coordinates.h"
 #include "saddleback/geodesics/saddle_vertex_graph.h"
+#include "saddleback/geodesics/shortened_curve.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh/barriers.h"
 #include "saddleback/mesh/feature_curves.h"

@@ -14,6 +14,7 @@
 #include "geodesics/queries/joined_paths.h"
 #include "geodesics/queries/point_targets.h"
 #include "geodesics/queries/query_cache.h"
+#include "geodesics/unfolding/chain_points.h"
 #include "geodesics/unfolding/line_of_sight.h"
 #include "geodesics/unfolding/path_shortening.h"
 #include "support/threads/parallel.h"
@@ -29,9 +30,6 @@ constexpr double k_rounding = 2e-9;
 constexpr double k_behind_short_edges = 1e-3;
 // Direction and length of an end's own arc are known to rounding.
 constexpr double k_angle_margin = 1e-7;
-// A crossing this near to an end of its edge is at the vertex: as a share of the edge or, where that is less than the
-// mean edge, of the mean edge, so that long and short edges of a vertex agree; but never more than a small share.
-constexpr double k_at_vertex = 1e-12, k_at_most = 1e-6;
 
 /// Distances from the sources and how they came about.
 struct PathField {
@@ -90,7 +88,7 @@ class PathMaker {
       make_chain(target, arrival);
       if (shorten_) shortener_.shorten(chain_);
       length = chain_.length();
-      write(paths);
+      append_points(mesh_, chain_, paths.points, paths.surface);
     }
     paths.offsets.push_back(static_cast<std::int64_t>(paths.points.size()));
     paths.lengths.push_back(length);
@@ -179,41 +177,6 @@ class PathMaker {
     if (!unfolder_.unfold(hint, point, leg)) {
       throw Error(message("the way from vertex ", arc.vertex, " to a point of face ", point.face, " was not found"));
     }
-  }
-
-  void write(GeodesicPaths& paths) {
-    add_end(paths, chain_.ends[0]);
-    for (std::size_t i = 0; i < chain_.leg_count; ++i) {
-      const UnfoldedArc& leg = chain_.legs[i];
-      for (std::size_t k = 0; k < leg.entered.size(); ++k) add_crossing(paths, leg.entered[k], leg.crossings[k]);
-      add_end(paths, chain_.ends[i + 1]);
-    }
-  }
-
-  void add_end(GeodesicPaths& paths, const LegEnd& end) { add(paths, end.point, position(mesh_, end.point)); }
-
-  void add_crossing(GeodesicPaths& paths, Index h, double t) {
-    double b = t;
-    if (t < k_at_most || t > 1 - k_at_most) {
-      const double near = std::min(k_at_most, k_at_vertex * std::max(1.0, mesh_.mean_edge_length() / mesh_.length(h)));
-      b = t < near ? 0 : t > 1 - near ? 1 : t;
-    }
-    const double a = 1 - b;
-    SurfacePoint point{Mesh::face_of(h), Vec3::Zero()};
-    point.barycentric[h % 3] = a;
-    point.barycentric[(h + 1) % 3] = b;
-    add(paths, point, a * mesh_.position(mesh_.from(h)) + b * mesh_.position(mesh_.to(h)));
-  }
-
-  /// Edges that meet at a vertex of the path are crossed there, in one point.
-  void add(GeodesicPaths& paths, const SurfacePoint& point, const Vec3& place) {
-    const bool is_first = static_cast<std::int64_t>(paths.points.size()) == paths.offsets.back();
-    if (!is_first && paths.points.back() == place) {
-      paths.surface.back() = point;
-      return;
-    }
-    paths.points.push_back(place);
-    paths.surface.push_back(point);
   }
 
   const SaddleVertexGraph& graph_;

@@ -11,8 +11,6 @@ namespace {
 
 // A side this much below pi is straight but for rounding.
 constexpr double k_straight = 1e-10;
-// Every step shortens the path; a cap for the case that rounding thinks so for ever.
-constexpr std::size_t k_steps_per_leg = 200;
 
 }  // namespace
 
@@ -32,24 +30,27 @@ double LegChain::length() const {
   return sum;
 }
 
-void PathShortener::shorten(LegChain& chain) {
-  std::size_t steps = k_steps_per_leg * (chain.leg_count + 1);
-  for (std::size_t i = 1; i < chain.leg_count && steps > 0;) {
-    const Side side = bent_side(chain, i);
-    if (side == Side::none || !join(chain, i, side)) {
-      ++i;
-      continue;
-    }
-    --steps;
-    replace(chain, i);
-    i = std::max<std::size_t>(i - 1, 1);  // the vertex before it is left in a new direction
-  }
+void PathShortener::lay_along(const LegEnd& begin, const LegEnd& end, std::span<const Index> entered, LegChain& chain) {
+  strip_.clear();
+  for (const Index h : entered) append(h);
+  trim(begin, end);
+  lay_out_turns(begin, end);
+  std::swap(chain, found_);
 }
 
-/// The side of vertex i on which the path has less than pi and the surface goes on all the way; of two the smaller one.
-PathShortener::Side PathShortener::bent_side(const LegChain& chain, std::size_t i) const {
-  const Index vertex = chain.ends[i].vertex;
-  const double back = chain.legs[i - 1].end_angle, ahead = chain.legs[i].start_angle;
+/// Goes to the other side of vertex i. \return false where that is no shorter.
+bool PathShortener::step(LegChain& chain, std::size_t i) {
+  const Side side = bent_side(joint(chain, i));
+  if (side == Side::none || !join(joint(chain, i), side)) return false;
+  replace(chain, i);
+  return true;
+}
+
+/// The side of the vertex on which the path has less than pi and the surface goes on all the way; of two the smaller
+/// one.
+PathShortener::Side PathShortener::bent_side(const Joint& joint) const {
+  const Index vertex = joint.at.vertex;
+  const double back = joint.in.end_angle, ahead = joint.out.start_angle;
   const double total = mesh_.total_angle(vertex);
   const double limit = std::numbers::pi - k_straight;
   if (mesh_.is_boundary(vertex)) {
@@ -61,16 +62,16 @@ PathShortener::Side PathShortener::bent_side(const LegChain& chain, std::size_t 
   return left < right ? Side::left : Side::right;
 }
 
-/// Fills found_ with the shortest path from end i - 1 to end i + 1 in the strip that goes round vertex i on that side.
+/// Fills found_ with the shortest path between the outer ends in the strip that goes round the vertex on that side.
 /// \return false when it is no shorter than the path by the vertex.
-bool PathShortener::join(const LegChain& chain, std::size_t i, Side side) {
+bool PathShortener::join(const Joint& joint, Side side) {
   strip_.clear();
-  for (const Index h : chain.legs[i - 1].entered) append(h);
-  if (!go_round(chain, i, side)) return false;
-  for (const Index h : chain.legs[i].entered) append(h);
-  trim(chain.ends[i - 1], chain.ends[i + 1]);
-  lay_out_turns(chain, i);
-  const double before = chain.legs[i - 1].length + chain.legs[i].length;
+  for (const Index h : joint.in.entered) append(h);
+  if (!go_round(joint, side)) return false;
+  for (const Index h : joint.out.entered) append(h);
+  trim(joint.before, joint.after);
+  lay_out_turns(joint.before, joint.after);
+  const double before = joint.in.length + joint.out.length;
   return found_.length() < before * (1 - 1e-15);
 }
 
@@ -83,9 +84,9 @@ void PathShortener::append(Index entered) {
   }
 }
 
-bool PathShortener::go_round(const LegChain& chain, std::size_t i, Side side) {
-  const Index vertex = chain.ends[i].vertex;
-  const UnfoldedArc &in = chain.legs[i - 1], &out = chain.legs[i];
+bool PathShortener::go_round(const Joint& joint, Side side) {
+  const Index vertex = joint.at.vertex;
+  const UnfoldedArc &in = joint.in, &out = joint.out;
   const auto leaving = [&](Index face) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h)
       if (mesh_.from(h) == vertex) return h;
@@ -102,11 +103,20 @@ bool PathShortener::go_round(const LegChain& chain, std::size_t i, Side side) {
     }
     return k_none;
   };
-  Index from = in.entered.empty() ? beside(chain.ends[i - 1], true) : Mesh::prev(in.entered.back());
-  const Index to = out.entered.empty() ? beside(chain.ends[i + 1], false) : Mesh::prev(mesh_.twin(out.entered.front()));
+  Index from = in.entered.empty() ? beside(joint.before, true) : Mesh::prev(in.entered.back());
+  const Index to = out.entered.empty() ? beside(joint.after, false) : Mesh::prev(mesh_.twin(out.entered.front()));
+  const double turn = side == Side::left ? in.end_angle - out.start_angle : out.start_angle - in.end_angle;
+  if (std::min(std::abs(turn), std::abs(turn + mesh_.total_angle(vertex))) <= k_straight) {
+    // Straight back nothing is between, but an edge along which both pieces run: on either side of it.
+    if (from == to || in.entered.empty() || out.entered.empty()) return true;
+    for (const Index entered : {mesh_.twin(from), mesh_.rotate(from)}) {
+      if (entered == k_none || Mesh::face_of(entered) != Mesh::face_of(to)) continue;
+      append(entered);
+      return true;
+    }
+  }
   if (from == k_none || to == k_none) return false;
   // In one corner the path turns back at once, or goes all the way round.
-  const double turn = side == Side::left ? in.end_angle - out.start_angle : out.start_angle - in.end_angle;
   bool all_round = from == to && turn < -k_straight;
   while (from != to || all_round) {
     all_round = false;
@@ -135,8 +145,7 @@ void PathShortener::trim(const LegEnd& begin, const LegEnd& end) {
   strip_.erase(strip_.begin(), strip_.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-void PathShortener::lay_out_turns(const LegChain& chain, std::size_t i) {
-  const LegEnd &begin = chain.ends[i - 1], &end = chain.ends[i + 1];
+void PathShortener::lay_out_turns(const LegEnd& begin, const LegEnd& end) {
   found_.clear();
   found_.ends.push_back(begin);
   std::size_t done = 0;
@@ -154,6 +163,13 @@ void PathShortener::lay_out_turns(const LegChain& chain, std::size_t i) {
 
 void PathShortener::replace(LegChain& chain, std::size_t i) {
   const auto at = static_cast<std::ptrdiff_t>(i);
+  if (found_.leg_count == 1 && found_.legs[0].length == 0) {  // there and back: it has no direction to go on with
+    chain.ends.erase(chain.ends.begin() + at, chain.ends.begin() + at + 2);
+    std::rotate(chain.legs.begin() + at - 1, chain.legs.begin() + at + 1,
+                chain.legs.begin() + static_cast<std::ptrdiff_t>(chain.leg_count));
+    chain.leg_count -= 2;
+    return;
+  }
   chain.ends.erase(chain.ends.begin() + at);
   chain.ends.insert(chain.ends.begin() + at, found_.ends.begin() + 1, found_.ends.end() - 1);
   std::swap(chain.legs[i - 1], found_.legs[0]);

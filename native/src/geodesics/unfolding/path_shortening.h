@@ -1,6 +1,8 @@
 #pragma once
 // The local geodesic near a chain of straight pieces.
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "geodesics/unfolding/face_strip.h"
@@ -21,22 +23,41 @@ struct LegChain {
 /// Moves a chain to the other side of vertices that it passes with less than pi on one side, until there are none: each
 /// time the faces about the vertex on that side join the faces before and after it to one strip, whose shortest path
 /// replaces the two pieces (as the edge flips of [sharp2020], but without a mesh to flip). Never longer; ends because
-/// every step is shorter.
+/// every step is shorter. Never leaves the homotopy class.
 class PathShortener {
  public:
   explicit PathShortener(const Unfolding& unfolding)
       : unfolding_(unfolding), mesh_(unfolding.mesh()), funnel_(unfolding) {}
-  void shorten(LegChain& chain);
+  /// `check` is called before every step: it throws to stop.
+  template <class Check>
+  void shorten(LegChain& chain, Check&& check);
+  void shorten(LegChain& chain) {
+    shorten(chain, [] {});
+  }
+  /// Makes the chain the shortest path along a strip, which is known by the half-edges entered.
+  void lay_along(const LegEnd& begin, const LegEnd& end, std::span<const Index> entered, LegChain& chain);
 
  private:
+  friend class LoopShortener;
   enum class Side { none, left, right };
-  Side bent_side(const LegChain& chain, std::size_t i) const;
-  bool join(const LegChain& chain, std::size_t i, Side side);
-  bool go_round(const LegChain& chain, std::size_t i, Side side);
+  /// Two pieces and what they join.
+  struct Joint {
+    const LegEnd &before, &at, &after;
+    const UnfoldedArc &in, &out;
+  };
+  static Joint joint(const LegChain& chain, std::size_t i) {
+    return {chain.ends[i - 1], chain.ends[i], chain.ends[i + 1], chain.legs[i - 1], chain.legs[i]};
+  }
+  bool step(LegChain& chain, std::size_t i);
+  Side bent_side(const Joint& joint) const;
+  bool join(const Joint& joint, Side side);
+  bool go_round(const Joint& joint, Side side);
   void append(Index entered);
   void trim(const LegEnd& begin, const LegEnd& end);
-  void lay_out_turns(const LegChain& chain, std::size_t i);
+  void lay_out_turns(const LegEnd& begin, const LegEnd& end);
   void replace(LegChain& chain, std::size_t i);
+  // Every step shortens the path; a cap for the case that rounding thinks so for ever.
+  static constexpr std::size_t k_steps_per_leg = 200;
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
@@ -44,5 +65,19 @@ class PathShortener {
   std::vector<Index> strip_;
   LegChain found_;
 };
+
+template <class Check>
+void PathShortener::shorten(LegChain& chain, Check&& check) {
+  std::size_t steps = k_steps_per_leg * (chain.leg_count + 1);
+  for (std::size_t i = 1; i < chain.leg_count && steps > 0;) {
+    check();
+    if (!step(chain, i)) {
+      ++i;
+      continue;
+    }
+    --steps;
+    i = std::max<std::size_t>(i - 1, 1);  // the vertex before it is left in a new direction
+  }
+}
 
 }  // namespace saddleback
