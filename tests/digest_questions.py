@@ -236,6 +236,17 @@ def trace_and_polar_map(case: meshes.Case, way: Way) -> Iterable[object]:
     return [*answer, curve.length, *all_of(polar, "vertices distance along shadowed")]
 
 
+@asked(LARGE)
+def curves_of_few_points(case: meshes.Case, way: Way) -> Iterable[object]:
+    own = np.flatnonzero(case.mesh.components == 0).astype(np.int32)
+    graph, stops, answer = graph_of(case, way), own[:: len(own) // 4][:4], []
+    for closed in (False, True):
+        straight, smooth = (sb.curve_through(graph, stops, closed=closed, smooth=smooth) for smooth in (False, True))
+        tight = sb.shorten_curve(straight)
+        answer += [straight.length, smooth.length, tight.points, tight.length, *surface(tight.surface)]
+    return [*answer, sb.bezier_curve(graph, stops).length]
+
+
 @asked(GOOD, portable=True)
 def project_and_sample(case: meshes.Case, way: Way) -> Iterable[object]:
     places = np.random.default_rng(3).uniform(-1.5, 1.5, (80, 3))

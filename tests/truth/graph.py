@@ -7,7 +7,9 @@ Neither windows nor arcs are looked at: only distances, paths and what they must
 from __future__ import annotations
 
 import heapq
+import tempfile
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -214,3 +216,52 @@ def arcs_are_the_graph(mesh: sb.Mesh, rng: Random) -> None:
     ends = (mesh.vertex_kinds[np.repeat(np.arange(count), np.diff(offsets))] == -1).astype(int)
     ends += mesh.vertex_kinds[targets] == -1
     assert graph.tiers == {"S-S": (ends == 2).sum() // 2, "N-S": (ends == 1).sum() // 2, "N-N": (ends == 0).sum() // 2}
+
+
+def file_of(graph: sb.SaddleVertexGraph) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        graph.save(Path(folder) / "graph")
+        return (Path(folder) / "graph").read_bytes()
+
+
+@guards("find_arcs", "arcs_across", "unite_arcs", "SaddleVertexGraph.from_parts")
+def graphs_of_parts(mesh: sb.Mesh, rng: Random) -> None:
+    """Parts in any number and order, found or united, make the very file of the graph built at once."""
+    rule = random_rule(mesh, rng)
+    if rule.pop("exact", False):  # which has no parts
+        rule["k"] = len(mesh.vertices)
+    rule["threads"] = 1
+    right = file_of(sb.SaddleVertexGraph(mesh, **rule))
+    count = int(rng.integers(1, 9))
+    found = [sb.find_arcs(mesh, part, count, **rule) for part in range(count)]
+    united = [
+        sb.unite_arcs(arcs, [sb.arcs_across(other, part) for other in found if other is not arcs], threads=1)
+        for part, arcs in enumerate(found)
+    ]
+    for parts in (found, united):
+        shuffled = [parts[i] for i in rng.permutation(count)]
+        joined = sb.SaddleVertexGraph.from_parts(mesh, shuffled, threads=1)
+        assert file_of(joined) == right, f"{rule} in {count} parts"
+
+
+@guards("SaddleVertexGraph.load", "SaddleVertexGraph.check")
+def graphs_in_mapped_files(mesh: sb.Mesh, rng: Random) -> None:
+    """A mapped graph gives the bits of the one saved; any byte that is changed is found by a check, or before."""
+    graph = sb.SaddleVertexGraph(mesh, threads=1)
+    source = int(rng.integers(mesh.vertex_count))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "graph"
+        graph.save(path)
+        mapped = sb.SaddleVertexGraph.load(path, mesh, mmap=True)
+        assert np.array_equal(mapped.distances([source]), graph.distances([source]))
+        mapped.check()
+        del mapped  # some systems change no mapped file
+        content = bytearray(path.read_bytes())
+        content[rng.integers(len(content))] ^= 1 << int(rng.integers(8))
+        path.write_bytes(content)
+        try:
+            sb.SaddleVertexGraph.load(path, mesh, mmap=True).check()
+        except sb.InputError as refusal:
+            assert str(path) in str(refusal), str(refusal)
+            return
+        raise AssertionError("a damaged file passed")

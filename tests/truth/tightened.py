@@ -15,6 +15,7 @@ from scipy.linalg import null_space
 
 import saddleback as sb
 from tests.truth.distances import Floats, Random, is_convex_and_flat, longest_edge
+from tests.truth.lines_and_maps import polyline_length
 from tests.truth.registry import guards
 from tests.truth.ways import assert_is_way, random_points
 
@@ -109,8 +110,12 @@ def link(mesh: sb.Mesh, held: NDArray[np.int32]) -> list[tuple[int, Floats, Floa
     if len(held) == 1:
         corners = [(face, *np.roll(t, -t.index(held[0]))[1:].tolist()) for face, t in about.items()]
     else:  # a face has two about a point on its edge, and three about one within it
-        corners = [(face, t[k], t[(k + 1) % 3]) for face, t in about.items() for k in range(3)
-                   if {t[k], t[(k + 1) % 3]} != set(held.tolist())]
+        corners = [
+            (face, t[k], t[(k + 1) % 3])
+            for face, t in about.items()
+            for k in range(3)
+            if {t[k], t[(k + 1) % 3]} != set(held.tolist())
+        ]
     first = next((c for c in corners if c[1] not in [other[2] for other in corners]), corners[0])
     ring = [first]
     while len(ring) < len(corners):
@@ -128,8 +133,10 @@ def sides(mesh: sb.Mesh, points: sb.SurfacePoints, places: Floats, before: int, 
     def direction(to: int) -> float:
         way = places[to] - places[at]
         shared = faces_with(mesh, np.union1d(held, held_by(mesh, points, to)))
-        off = [angle(right, way) + angle(way, left) - angle(right, left) if face in shared else np.inf
-               for face, right, left in sectors]
+        off = [
+            angle(right, way) + angle(way, left) - angle(right, left) if face in shared else np.inf
+            for face, right, left in sectors
+        ]
         best = int(np.argmin(off))
         assert off[best] <= SLACK, f"the way from point {at} to point {to} is off the surface by {off[best]}"
         return float(starts[best] + angle(sectors[best][1], way))
@@ -150,8 +157,8 @@ def assert_tight(mesh: sb.Mesh, points: sb.SurfacePoints, closed: bool) -> None:
         assert min(found) >= np.pi - SLACK, f"point {i} of {count}: {found}"
 
 
-def is_shapely(mesh: sb.Mesh) -> NDArray[np.bool_]:
-    return mesh.face_areas.min() > 1e-4 * longest_edge(mesh) ** 2
+def is_shapely(mesh: sb.Mesh) -> bool:
+    return float(mesh.face_areas.min()) > 1e-4 * longest_edge(mesh) ** 2
 
 
 @guards("shorten_curve", "SurfaceCurve", "GeodesicPath")
@@ -184,3 +191,55 @@ def tight_curves(mesh: sb.Mesh, rng: Random) -> None:
     np.testing.assert_allclose(integrals(mesh, forms, tight.surface, closed), wound, atol=1e-8)
     assert_tight(mesh, tight.surface, closed)
     assert not (closed and is_convex_and_flat(mesh))
+
+
+def halved(polygon: Floats, halvings: int) -> Floats:
+    """The control polygons of the pieces of a Bezier curve of the plane, one after the other."""
+    if halvings == 0:
+        return polygon
+    left, right = [polygon[0]], [polygon[-1]]
+    while len(polygon) > 1:
+        polygon = (polygon[1:] + polygon[:-1]) / 2
+        left.append(polygon[0])
+        right.append(polygon[-1])
+    return np.vstack([halved(np.array(left), halvings - 1), halved(np.array(right[::-1]), halvings - 1)])
+
+
+def distances_to_line(points: Floats, line: Floats) -> Floats:
+    """Of points from a polyline in space."""
+    begins, ways = line[:-1], np.diff(line, axis=0)
+    squares = np.maximum((ways**2).sum(axis=1), 1e-300)
+    shares = np.clip(((points[:, None] - begins) * ways).sum(axis=2) / squares, 0, 1)
+    found: Floats = np.linalg.norm(points[:, None] - begins - shares[..., None] * ways, axis=2).min(axis=1)
+    return found
+
+
+@guards("curve_through", "bezier_curve", "SurfaceCurve")
+def drawn_curves(mesh: sb.Mesh, rng: Random) -> None:
+    """Curves meet their points, are as long as the ways between them, and are those of the plane where that is flat."""
+    if not is_shapely(mesh):
+        return
+    graph = sb.SaddleVertexGraph(mesh, threads=1)
+    own = np.flatnonzero(mesh.components[mesh.triangles[:, 0]] == rng.integers(mesh.component_count))
+    stops = random_points(mesh, rng, int(rng.integers(3, 6)), own)
+    places, closed = stops.positions(mesh), bool(rng.random() < 0.5)
+    apart = np.linalg.norm(places - np.roll(places, 1, axis=0), axis=1)
+    if apart.min() < 1e-6 * longest_edge(mesh):
+        return
+    size = 1e-9 * longest_edge(mesh) + 1e-15 * float(np.abs(mesh.vertices).max())  # rounding of places
+    order = [*range(len(stops)), *([0] if closed else [])]
+    through = sb.curve_through(graph, stops, closed=closed)
+    ways = [graph.path(stops[i], stops[j], shorten=True).length for i, j in pairwise(order)]
+    assert abs(through.length - sum(ways)) <= 1e-9 * sum(ways)
+    halvings = int(rng.integers(0, 5))
+    smooth = sb.curve_through(graph, stops, closed=closed, smooth=True, halvings=halvings)
+    bezier = sb.bezier_curve(graph, stops, halvings=halvings)
+    for curve, met in ((through, places), (smooth, places), (bezier, places[[0, -1]])):
+        line = curve.points.positions(mesh)
+        line = np.vstack([line, line[:1]]) if closed and curve is not bezier else line
+        assert abs(polyline_length(line) - curve.length) <= 1e-9 * curve.length
+        assert distances_to_line(met, line).max() <= size
+    if is_convex_and_flat(mesh):
+        flat, line = halved(places, halvings), bezier.points.positions(mesh)
+        assert distances_to_line(flat, line).max() <= 10 * size
+        assert distances_to_line(line, flat).max() <= 10 * size

@@ -1,5 +1,6 @@
 // Curves on the surface, paths in the graph, log map and polar coordinates.
 
+#include "saddleback/geodesics/curve_through.h"
 #include "saddleback/geodesics/geodesic_paths.h"
 #include "saddleback/geodesics/log_map.h"
 #include "saddleback/geodesics/polar_coordinates.h"
@@ -93,6 +94,54 @@ Raises:
 Notes:
     O(faces crossed) a step. As the edge flips of [sharp2020], on the faces themselves; closed curves in a strip of faces
     by the least value of a convex function.
+)";
+
+constexpr const char* k_through_doc = R"(The curve through points that may be far apart.
+
+Shortest ways join them (`SaddleVertexGraph.path`, `shorten=True`) or, if it is to be smooth, cubic Bezier curves along the
+bisector of the directions at each point.
+
+Args:
+    graph: the graph of the mesh.
+    points: vertices or SurfacePoints, at least two (three, if closed), in order.
+    closed: the curve runs on from the last point to the first.
+    smooth: without corners at the points.
+    halvings: 0 to 10; a smooth piece is drawn as 2^halvings pieces.
+    job: progress and cancellation.
+
+Returns:
+    SurfaceCurve.
+
+Raises:
+    InputError: too few points, a point off the mesh, two neighbors that are the same or on different components (their
+        indices are named), halvings out of range.
+    Cancelled: the job was.
+
+Notes:
+    A distance field a point, then O(faces crossed) each time that a piece is halved.
+)";
+
+constexpr const char* k_bezier_doc = R"(The Bezier curve of control points on the surface.
+
+De Casteljau's construction with shortest ways in place of straight lines: it begins and ends at the first and the last
+point, in the directions of those next to them.
+
+Args:
+    graph: the graph of the mesh.
+    controls: vertices or SurfacePoints, at least two, in order; four make a cubic curve.
+    halvings: 0 to 10; the curve is drawn as 2^halvings pieces.
+    job: progress and cancellation.
+
+Returns:
+    SurfaceCurve.
+
+Raises:
+    InputError: as `curve_through`.
+    Cancelled: the job was.
+
+Notes:
+    A distance field a point, then O(faces crossed) each time that a piece is halved. After [morera2007], by halves as in [mancinelli2022]; ways stay in
+    their homotopy class, so that the curve does not jump.
 )";
 
 constexpr const char* k_log_map_doc = R"(Length and direction of the shortest path to every vertex about a point.
@@ -214,6 +263,36 @@ GeodesicPath shorten_curve(const py::object& curve, const py::object& job) {
   return without_gil([&] { return shortened_curve(given, token); });
 }
 
+const SaddleVertexGraph& as_graph(const py::object& graph) {
+  if (!py::isinstance<SaddleVertexGraph>(graph)) throw InputError("graph: wanted a SaddleVertexGraph");
+  return py::cast<const SaddleVertexGraph&>(graph);
+}
+
+/// A curve keeps its mesh alive.
+py::object curve_of(const py::object& graph, SurfaceCurve&& curve) {
+  py::object result = py::cast(std::move(curve));
+  py::detail::keep_alive_impl(result, graph);
+  return result;
+}
+
+py::object through(const py::object& graph_object, const py::object& points, bool closed, bool smooth,
+                   const py::object& halvings, const py::object& job) {
+  const SaddleVertexGraph& graph = as_graph(graph_object);
+  const SurfacePoints given = as_surface_points(points, graph.mesh(), "points");
+  const CurveThroughOptions options{closed, smooth, as_integer(halvings, "halvings")};
+  const JobIn token(job);
+  return curve_of(graph_object, without_gil([&] { return curve_through(graph, given, options, token); }));
+}
+
+py::object bezier(const py::object& graph_object, const py::object& controls, const py::object& halvings,
+                  const py::object& job) {
+  const SaddleVertexGraph& graph = as_graph(graph_object);
+  const SurfacePoints given = as_surface_points(controls, graph.mesh(), "controls");
+  const int wanted = as_integer(halvings, "halvings");
+  const JobIn token(job);
+  return curve_of(graph_object, without_gil([&] { return bezier_curve(graph, given, wanted, token); }));
+}
+
 void bind_geodesic_paths(py::module_& m) {
   py::class_<GeodesicPaths>(m, "GeodesicPaths", py::module_local(), k_paths_doc)
       .def_property_readonly("points", view_of_member(&GeodesicPaths::points),
@@ -237,6 +316,11 @@ void bind_geodesic_paths(py::module_& m) {
   add_method(m, "SaddleVertexGraph", "paths", &paths_between, py::arg("sources"), py::arg("targets"),
              py::arg("shorten") = false, py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
              k_many_paths_doc);
+  m.def("curve_through", &through, py::arg("graph"), py::arg("points"), py::kw_only(), py::arg("closed") = false,
+        py::arg("smooth") = false, py::arg("halvings") = k_default_halvings, py::arg("job") = py::none(),
+        k_through_doc);
+  m.def("bezier_curve", &bezier, py::arg("graph"), py::arg("controls"), py::kw_only(),
+        py::arg("halvings") = k_default_halvings, py::arg("job") = py::none(), k_bezier_doc);
   m.def("shorten_curve", &shorten_curve, py::arg("curve"), py::kw_only(), py::arg("job") = py::none(), k_shorten_doc);
 }
 

@@ -12,6 +12,7 @@
 #include "saddleback/field/direction_field.h"
 #include "saddleback/field/spread_values.h"
 #include "saddleback/field/streamline.h"
+#include "saddleback/geodesics/curve_through.h"
 #include "saddleback/geodesics/exact_distances.h"
 #include "saddleback/geodesics/geodesic_paths.h"
 #include "saddleback/geodesics/graph_neighbors.h"

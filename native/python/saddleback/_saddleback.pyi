@@ -1530,6 +1530,90 @@ class PolarCoordinates:
         """(m,) bool: the shortest path bends at a saddle vertex."""
     def __len__(self) -> int: ...
 
+def bezier_curve(
+    graph: SaddleVertexGraph, controls: _Points, *, halvings: SupportsIndex = 5, job: Job | None = None
+) -> SurfaceCurve:
+    """The Bezier curve of control points on the surface.
+
+    De Casteljau's construction with shortest ways in place of straight lines: it begins and ends at the first and the last
+    point, in the directions of those next to them.
+
+    Args:
+        graph: the graph of the mesh.
+        controls: vertices or SurfacePoints, at least two, in order; four make a cubic curve.
+        halvings: 0 to 10; the curve is drawn as 2^halvings pieces.
+        job: progress and cancellation.
+
+    Returns:
+        SurfaceCurve.
+
+    Raises:
+        InputError: as `curve_through`.
+        Cancelled: the job was.
+
+    Notes:
+        A distance field a point, then O(faces crossed) each time that a piece is halved. After [morera2007], by halves as in [mancinelli2022]; ways stay in
+        their homotopy class, so that the curve does not jump.
+    """
+
+def curve_through(
+    graph: SaddleVertexGraph,
+    points: _Points,
+    *,
+    closed: bool = False,
+    smooth: bool = False,
+    halvings: SupportsIndex = 5,
+    job: Job | None = None,
+) -> SurfaceCurve:
+    """The curve through points that may be far apart.
+
+    Shortest ways join them (`SaddleVertexGraph.path`, `shorten=True`) or, if it is to be smooth, cubic Bezier curves along the
+    bisector of the directions at each point.
+
+    Args:
+        graph: the graph of the mesh.
+        points: vertices or SurfacePoints, at least two (three, if closed), in order.
+        closed: the curve runs on from the last point to the first.
+        smooth: without corners at the points.
+        halvings: 0 to 10; a smooth piece is drawn as 2^halvings pieces.
+        job: progress and cancellation.
+
+    Returns:
+        SurfaceCurve.
+
+    Raises:
+        InputError: too few points, a point off the mesh, two neighbors that are the same or on different components (their
+            indices are named), halvings out of range.
+        Cancelled: the job was.
+
+    Notes:
+        A distance field a point, then O(faces crossed) each time that a piece is halved.
+    """
+
+def shorten_curve(curve: SurfaceCurve, *, job: Job | None = None) -> GeodesicPath:
+    """Pulls a curve tight on the surface, without leaving its homotopy class.
+
+    The ends of an open curve stay where they are. A closed curve becomes a closed geodesic, such as the ring about the
+    narrowest place of a neck, or contracts to a point where nothing holds it.
+
+    Args:
+        curve: a SurfaceCurve.
+        job: progress and cancellation.
+
+    Returns:
+        GeodesicPath: straight but at vertices, which it passes with at least pi on either side (but at the boundary). The
+        points of a closed curve are listed once: `SurfaceCurve(mesh, path.surface, closed=True)`. One that contracts is one
+        point, of length 0.
+
+    Raises:
+        InputError: no curve.
+        Cancelled: the job was.
+
+    Notes:
+        O(faces crossed) a step. As the edge flips of [sharp2020], on the faces themselves; closed curves in a strip of faces
+        by the least value of a convex function.
+    """
+
 def polar_coordinates(
     graph: SaddleVertexGraph,
     curve: SurfaceCurve | GeodesicPath | _Points,

@@ -17,7 +17,7 @@ class LoopShortener {
  public:
   LoopShortener(const Unfolding& unfolding, const JobStage& stage)
       : mesh_(unfolding.mesh()), shortener_(unfolding), stage_(stage) {}
-  /// What became of a curve.
+  /// Says what became of a curve.
   enum class Result {
     tight,    ///< it is a local geodesic
     point,    ///< it contracted
