@@ -3,18 +3,12 @@
 #include <vector>
 
 #include "geodesics/unfolding/chain_points.h"
+#include "geodesics/unfolding/face_strip.h"
 #include "geodesics/unfolding/loop_shortening.h"
 #include "geodesics/unfolding/path_shortening.h"
 
 namespace saddleback {
 namespace {
-
-/// The half-edge that leaves a vertex of a face there; k_none where the vertex is none of the face's.
-Index leaving(const Mesh& mesh, Index vertex, Index face) {
-  for (Index h = 3 * face; h < 3 * face + 3; ++h)
-    if (mesh.from(h) == vertex) return h;
-  return k_none;
-}
 
 /// Appends the half-edges entered about a vertex from a face to another one, on the way over fewer faces. Both ways are
 /// of one class, and at the boundary one of them leads there.
@@ -52,7 +46,8 @@ void append_between(const Mesh& mesh, const SurfacePoint& point, Index from, Ind
   append_about(mesh, mesh.triangles()[from][corner], from, to, entered);
 }
 
-/// Returns the half-edges that a curve enters.
+/// Returns the half-edges that a curve enters; an open one on its way from the face of its first point to that of its
+/// last.
 std::vector<Index> strip_of(const SurfaceCurve& curve) {
   const Mesh& mesh = curve.mesh();
   const SurfacePoints& points = curve.points();
@@ -64,8 +59,10 @@ std::vector<Index> strip_of(const SurfaceCurve& curve) {
     faces.push_back(face != k_none ? face : shared_face(mesh, a, b, k_barycentric_tolerance));
   }
   std::vector<Index> entered;
+  if (!curve.closed()) append_between(mesh, points.front(), points.front().face, faces.front(), entered);
   for (std::size_t i = 1; i < pieces; ++i) append_between(mesh, points[i], faces[i - 1], faces[i], entered);
-  if (curve.closed()) append_between(mesh, points[0], faces.back(), faces.front(), entered);
+  append_between(mesh, points[pieces % count], faces.back(), curve.closed() ? faces.front() : points.back().face,
+                 entered);
   return entered;
 }
 

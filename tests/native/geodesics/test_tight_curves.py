@@ -73,6 +73,18 @@ def test_a_ring_that_nothing_holds_contracts() -> None:
     assert tight.length == 0
 
 
+@pytest.mark.parametrize("begin", [9, 14])
+@pytest.mark.parametrize("end", [8, 11])
+def test_ends_on_edges_lie_in_both_faces(begin: int, end: int) -> None:
+    """Whichever they are given in, a curve all about vertex 5 becomes the straight line between them."""
+    mesh = sb.Mesh(*meshes.grid(4, 4))
+    on_edges = [(begin, 9, 10), (9, 9, 5), (1, 4, 5), (0, 0, 5), (0, 1, 5), (3, 6, 5), (end, 6, 10)]
+    weights = [np.isin(mesh.triangles[face], edge) / 2 for face, *edge in on_edges]
+    points = sb.SurfacePoints([face for face, *_ in on_edges], weights)
+    tight = sb.shorten_curve(sb.SurfaceCurve(mesh, points))
+    assert tight.length == pytest.approx(np.sqrt(2) / 6, rel=1e-14)
+
+
 @pytest.mark.parametrize("turns", [1, 2, -3])
 def test_a_helix_is_the_straight_line_of_the_unrolled_tube(turns: int) -> None:
     """A prism unrolls to a strip, on which a curve that winds so many times is a line to one point of many."""

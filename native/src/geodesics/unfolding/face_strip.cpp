@@ -49,13 +49,6 @@ Vec2 end_of(const Mesh& mesh, const LegEnd& end, Index h, const Placed& place, c
   return end.is_vertex() ? apex : place_of(mesh, end.point, h, place, apex);
 }
 
-/// The half-edge that leaves `vertex` in `face`.
-Index leaving(const Mesh& mesh, Index vertex, Index face) {
-  for (Index h = 3 * face; h < 3 * face + 3; ++h)
-    if (mesh.from(h) == vertex) return h;
-  return k_none;
-}
-
 /// Surface angle, at the vertex `h` leaves, of the direction to a point of h's face.
 double angle_to(const Unfolding& unfolding, Index h, const SurfacePoint& point) {
   const Placed own{Vec2(0, 0), Vec2(unfolding.mesh().length(h), 0)};
@@ -82,6 +75,12 @@ void lay_out_in_face(const Unfolding& unfolding, const LegEnd& begin, const LegE
 
 LegEnd leg_end(const Mesh& mesh, const SurfacePoint& point) { return {vertex_at(mesh, point), point}; }
 LegEnd leg_end(const Mesh& mesh, Index vertex) { return {vertex, at_vertex(mesh, vertex)}; }
+
+Index leaving(const Mesh& mesh, Index vertex, Index face) {
+  for (Index h = 3 * face; h < 3 * face + 3; ++h)
+    if (mesh.from(h) == vertex) return h;
+  return k_none;
+}
 
 void lay_out(const Unfolding& unfolding, const LegEnd& begin, const LegEnd& end, std::span<const Index> entered,
              UnfoldedArc& leg) {

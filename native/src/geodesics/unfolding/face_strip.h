@@ -18,6 +18,9 @@ struct LegEnd {
 LegEnd leg_end(const Mesh& mesh, const SurfacePoint& point);
 LegEnd leg_end(const Mesh& mesh, Index vertex);
 
+/// The half-edge that leaves a vertex in a face; k_none where the face does not have it.
+Index leaving(const Mesh& mesh, Index vertex, Index face);
+
 /// The straight way through a strip of faces, which are known by the half-edges `entered` between them; the line is
 /// known to stay inside but for rounding. Without any, both ends lie in one face or on one edge.
 void lay_out(const Unfolding& unfolding, const LegEnd& begin, const LegEnd& end, std::span<const Index> entered,

@@ -87,15 +87,10 @@ void PathShortener::append(Index entered) {
 bool PathShortener::go_round(const Joint& joint, Side side) {
   const Index vertex = joint.at.vertex;
   const UnfoldedArc &in = joint.in, &out = joint.out;
-  const auto leaving = [&](Index face) {
-    for (Index h = 3 * face; h < 3 * face + 3; ++h)
-      if (mesh_.from(h) == vertex) return h;
-    return k_none;
-  };
   // The half-edge out of the vertex to another one, and the corner of the face on the wanted side of it, seen along the
   // path.
   const auto beside = [&](const LegEnd& end, bool arriving) {
-    if (!end.is_vertex()) return leaving(end.point.face);
+    if (!end.is_vertex()) return leaving(mesh_, vertex, end.point.face);
     for (const Index h : outgoing(mesh_, vertex)) {
       const bool own_face = (side == Side::left) != arriving;  // the face on the left of h, which leads away
       if (own_face && mesh_.to(h) == end.vertex) return h;
