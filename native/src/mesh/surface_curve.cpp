@@ -38,10 +38,12 @@ std::optional<Vec3> barycentric_in(const Mesh& mesh, const SurfacePoint& point, 
   if (face == point.face) return point.barycentric;
   Vec3 result = Vec3::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (point.barycentric[i] <= tolerance) continue;
     const int corner = corner_of(mesh, face, mesh.triangles()[point.face][i]);
-    if (corner < 0) return std::nullopt;
-    result[corner] = point.barycentric[i];
+    if (corner >= 0) {
+      result[corner] = point.barycentric[i];
+    } else if (point.barycentric[i] > tolerance) {
+      return std::nullopt;
+    }
   }
   // Two faces share at most an edge: a point inside its own face has no coordinates in another.
   if (result.minCoeff() > 0) return std::nullopt;

@@ -85,6 +85,20 @@ def test_ends_on_edges_lie_in_both_faces(begin: int, end: int) -> None:
     assert tight.length == pytest.approx(np.sqrt(2) / 6, rel=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("arrays", "walk", "length"),
+    [
+        (meshes.cube(), [5, 7, 3], np.sqrt(2)),
+        (meshes.icosphere(0), [8, 3, 9, 1], 4 / np.sqrt(10 + 2 * np.sqrt(5))),
+        (meshes.tetrahedron(), [1, 3, 2, 1], 0),
+    ],
+)
+def test_a_way_through_the_tip_of_a_cone_slips_off(arrays: meshes.Arrays, walk: list[int], length: float) -> None:
+    """Laid out flat it is straight on one side, and on the other it has less than pi."""
+    tight = sb.shorten_curve(sb.SurfaceCurve(sb.Mesh(*arrays), walk))
+    assert tight.length == pytest.approx(length, abs=1e-14)
+
+
 @pytest.mark.parametrize("turns", [1, 2, -3])
 def test_a_helix_is_the_straight_line_of_the_unrolled_tube(turns: int) -> None:
     """A prism unrolls to a strip, on which a curve that winds so many times is a line to one point of many."""

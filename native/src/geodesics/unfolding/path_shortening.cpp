@@ -11,6 +11,18 @@ namespace {
 
 // A side this much below pi is straight but for rounding.
 constexpr double k_straight = 1e-10;
+// Of an edge: a leg that crosses it nearer to its end than that runs through the vertex.
+constexpr double k_through = 1e-10;
+
+/// The vertex that a leg runs through where it crosses a half-edge, if it is the tip of a cone: straight on one side,
+/// the leg is bent on the other.
+Index cone_met(const Mesh& mesh, Index entered, double crossing) {
+  const bool at_from = crossing <= k_through;
+  if (!at_from && crossing < 1 - k_through) return k_none;
+  const Index vertex = at_from ? mesh.from(entered) : mesh.to(entered);
+  const bool is_cone = mesh.total_angle(vertex) < 2 * std::numbers::pi - k_straight;
+  return is_cone && !mesh.is_boundary(vertex) ? vertex : k_none;
+}
 
 }  // namespace
 
@@ -100,8 +112,8 @@ bool PathShortener::go_round(const Joint& joint, Side side) {
   };
   Index from = in.entered.empty() ? beside(joint.before, true) : Mesh::prev(in.entered.back());
   const Index to = out.entered.empty() ? beside(joint.after, false) : Mesh::prev(mesh_.twin(out.entered.front()));
-  const double turn = side == Side::left ? in.end_angle - out.start_angle : out.start_angle - in.end_angle;
-  if (std::min(std::abs(turn), std::abs(turn + mesh_.total_angle(vertex))) <= k_straight) {
+  const double total = mesh_.total_angle(vertex);
+  if (std::abs(std::remainder(in.end_angle - out.start_angle, total)) <= k_straight) {
     // Straight back nothing is between, but an edge along which both pieces run: on either side of it.
     if (from == to || in.entered.empty() || out.entered.empty()) return true;
     for (const Index entered : {mesh_.twin(from), mesh_.rotate(from)}) {
@@ -111,8 +123,14 @@ bool PathShortener::go_round(const Joint& joint, Side side) {
     }
   }
   if (from == k_none || to == k_none) return false;
-  // In one corner the path turns back at once, or goes all the way round.
-  bool all_round = from == to && turn < -k_straight;
+  // In one corner the path turns back at once, or goes all the way round. The edge on the left of the last corner is at
+  // no angle as well as at a full one.
+  const auto within = [&](double angle) {
+    const double here = angle - unfolding_.polar(from);
+    return here < -k_straight ? here + total : here;
+  };
+  const double past = within(out.start_angle) - within(in.end_angle);
+  bool all_round = from == to && (side == Side::left ? past : -past) > k_straight;
   while (from != to || all_round) {
     all_round = false;
     if (side == Side::left) {  // clockwise
@@ -182,6 +200,31 @@ void PathShortener::replace(LegChain& chain, std::size_t i) {
     std::rotate(first, added, added + 1);
     std::swap(*first, found_.legs[k]);
   }
+}
+
+/// Makes two legs of the first one that runs through the tip of a cone. \return false where none does.
+bool PathShortener::split_at_cone(LegChain& chain) {
+  for (std::size_t i = 0; i < chain.leg_count; ++i) {
+    for (std::size_t k = 0; k < chain.legs[i].entered.size(); ++k) {
+      const Index vertex = cone_met(mesh_, chain.legs[i].entered[k], chain.legs[i].crossings[k]);
+      if (vertex == k_none) continue;
+      const std::vector<Index> entered = chain.legs[i].entered;
+      const auto at = static_cast<std::ptrdiff_t>(i), cut = static_cast<std::ptrdiff_t>(k);
+      chain.ends.insert(chain.ends.begin() + at + 1, leg_end(mesh_, vertex));
+      chain.add_leg();
+      const auto end = chain.legs.begin() + static_cast<std::ptrdiff_t>(chain.leg_count);
+      std::rotate(chain.legs.begin() + at, end - 1, end);
+      const auto lay = [&](std::size_t leg, auto first, auto last) {
+        strip_.assign(first, last);
+        trim(chain.ends[leg], chain.ends[leg + 1]);
+        lay_out(unfolding_, chain.ends[leg], chain.ends[leg + 1], strip_, chain.legs[leg]);
+      };
+      lay(i, entered.begin(), entered.begin() + cut);
+      lay(i + 1, entered.begin() + cut, entered.end());
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace saddleback

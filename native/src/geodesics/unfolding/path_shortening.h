@@ -56,6 +56,7 @@ class PathShortener {
   void trim(const LegEnd& begin, const LegEnd& end);
   void lay_out_turns(const LegEnd& begin, const LegEnd& end);
   void replace(LegChain& chain, std::size_t i);
+  bool split_at_cone(LegChain& chain);
   // Every step shortens the path; a cap for the case that rounding thinks so for ever.
   static constexpr std::size_t k_steps_per_leg = 200;
 
@@ -69,15 +70,17 @@ class PathShortener {
 template <class Check>
 void PathShortener::shorten(LegChain& chain, Check&& check) {
   std::size_t steps = k_steps_per_leg * (chain.leg_count + 1);
-  for (std::size_t i = 1; i < chain.leg_count && steps > 0;) {
-    check();
-    if (!step(chain, i)) {
-      ++i;
-      continue;
+  do {
+    for (std::size_t i = 1; i < chain.leg_count && steps > 0;) {
+      check();
+      if (!step(chain, i)) {
+        ++i;
+        continue;
+      }
+      --steps;
+      i = std::max<std::size_t>(i - 1, 1);  // the vertex before it is left in a new direction
     }
-    --steps;
-    i = std::max<std::size_t>(i - 1, 1);  // the vertex before it is left in a new direction
-  }
+  } while (steps > 0 && split_at_cone(chain));
 }
 
 }  // namespace saddleback
