@@ -2,7 +2,7 @@
 """What is handed to PyVista, Open3D, Polyscope and matplotlib arrives there: tests of tests/native, with these.
 
 They are 2 GB, so they are fetched into an environment of their own, and only where SADDLEBACK_PACKAGING=all asks for
-it, as the workflows do.
+it, as the workflows do. A bare Debian lacks what they draw with: libgl1 libegl1 libusb-1.0-0 libx11-6.
 """
 
 import os

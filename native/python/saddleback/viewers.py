@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import ctypes
+import importlib.metadata
 import itertools
 import os
+import sys
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
@@ -18,6 +21,7 @@ from saddleback._saddleback import (
     DirectionField,
     Distribution,
     DualMesh,
+    Error,
     GeodesicPath,
     GeodesicVoronoi,
     InputError,
@@ -85,6 +89,8 @@ def show(
         Something that cannot be shown, or not without its mesh; another backend.
     ImportError
         There is no such package.
+    Error
+        PyVista's VTK finds nothing to draw with: on a Linux without a display that is libEGL.
     """
     scene = _Scene([], [], [], [])
     if mesh is not None:
@@ -139,8 +145,23 @@ def _add(scene: _Scene, thing: Any, mesh: Mesh | None, mark: str) -> None:
         raise InputError(f"things: a {type(thing).__name__} cannot be shown")
 
 
+def _can_vtk_draw() -> bool:
+    """Without a display VTK dies by a signal unless it finds one of these libraries or brings its own."""
+    if sys.platform != "linux" or os.environ.get("DISPLAY"):
+        return True
+    for name in ("libEGL.so.1", "libOSMesa.so.8"):
+        try:
+            ctypes.CDLL(name)
+        except OSError:
+            continue
+        return True
+    return any(found.name == "vtk-osmesa" for found in importlib.metadata.distributions())
+
+
 def _by_pyvista(scene: _Scene, picture: Any, is_shown: bool) -> Any:
     pyvista = _package("pyvista", "show")
+    if not _can_vtk_draw():
+        raise Error("there is no display, and no libEGL to draw without one: install it (libegl1), or PyVista crashes")
     plotter = pyvista.Plotter(off_screen=picture is not None or not is_shown)
     for name, surface, of_vertices, of_faces in scene.surfaces:
         data = pyvista.PolyData.from_regular_faces(surface.vertices, surface.triangles)

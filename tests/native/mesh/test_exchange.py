@@ -7,6 +7,7 @@ tests/packaging/test_other_packages.py runs this file with all of them.
 
 from __future__ import annotations
 
+import ctypes
 import importlib.util
 import io
 import os
@@ -316,6 +317,18 @@ def test_everything_can_be_shown(backend: str, tmp_path: Path) -> None:
         given = {"attributes": {"value": VALUES}} if number == 5 else {}
         sb.show(*things, mesh=MESH if number == 5 else None, backend=backend, picture=picture, **given)
         assert backend == "polyscope" or len(np.unique(np.array(Image.open(picture)))) > 5
+
+
+@needs("pyvista")
+def test_a_machine_that_cannot_draw_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def no_library(name: str) -> None:
+        raise OSError(name)
+
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr(ctypes, "CDLL", no_library)
+    with pytest.raises(sb.Error, match="there is no display, and no libEGL"):
+        sb.show(MESH, backend="pyvista", picture=tmp_path / "no.png")
 
 
 def test_what_cannot_be_shown_says_why() -> None:
