@@ -247,6 +247,14 @@ def curves_of_few_points(case: meshes.Case, way: Way) -> Iterable[object]:
     return [*answer, sb.bezier_curve(graph, stops).length]
 
 
+@asked(LARGE)
+def map_along_a_curve(case: meshes.Case) -> Iterable[object]:
+    edge = case.mesh.mean_edge_length
+    curve = sb.SurfaceCurve(case.mesh, sb.trace(case.mesh, points_on(case, 4)[3], 1.0, 5 * edge).surface)
+    found = sb.stroke_map(case.mesh, curve, 2 * edge)
+    return [*all_of(found, "vertices triangles uv face_origin length area coverage"), *surface(found.points)]
+
+
 @asked(GOOD, portable=True)
 def project_and_sample(case: meshes.Case, way: Way) -> Iterable[object]:
     places = np.random.default_rng(3).uniform(-1.5, 1.5, (80, 3))

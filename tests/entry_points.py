@@ -357,6 +357,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "map_shapes": lambda **more: sb.map_shapes(at.mesh, at.star, at.laid.placements, **more),
         "plot": lambda: if_installed(lambda: sb.plot(quality)),
         "polar_coordinates": lambda: sb.polar_coordinates(at.graph, at.curve, 0.5),
+        "stroke_map": lambda: sb.stroke_map(at.mesh, at.curve, 0.5),
         "principal_curvatures": lambda: sb.principal_curvatures(at.mesh),
         "progress_bar": lambda: contextlib.ExitStack().enter_context(sb.progress_bar(io.StringIO())),
         "project": lambda **more: sb.project(at.mesh, at.vertices * 1.1, **more),

@@ -94,6 +94,7 @@ def calls() -> dict[str, Callable[[], object]]:
         "graph.log_map": lambda: graph.log_map(0, 1.0).uv.sum(),
         "polar_coordinates": lambda: sb.polar_coordinates(graph, graph.path(0, 50), 0.5).distance.sum(),
         "shorten_curve": lambda: sb.shorten_curve(sb.curve_through(graph, [0, 20, 50])).length,
+        "stroke_map": lambda: sb.stroke_map(mesh, graph.path(0, 50), 0.5).uv.sum(),
         "exp_map": lambda: sb.exp_map(mesh, 0, [(0.1, 0.2)]).barycentric.sum(),
         "geodesic_voronoi": lambda: sb.geodesic_voronoi(graph, few).areas.sum(),
         "geodesic_voronoi exact": lambda: sb.geodesic_voronoi(graph, few, exact=True).areas.sum(),

@@ -34,6 +34,7 @@ void bind_shape_maps(py::module_& m);
 void bind_shapes(py::module_& m);
 void bind_states(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
+void bind_stroke_map(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
 void bind_graph_parts(py::module_& m);
@@ -178,6 +179,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_voronoi_2d(m);
   bind_devices(m);
   bind_charts(m);
+  bind_stroke_map(m);
   bind_relax_2d(m);
   bind_shapes(m);
   bind_placements(m);

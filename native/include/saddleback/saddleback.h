@@ -4,6 +4,7 @@
 #include "saddleback/charts/chart.h"
 #include "saddleback/charts/disk_map.h"
 #include "saddleback/charts/lifted_voronoi.h"
+#include "saddleback/charts/stroke_map.h"
 #include "saddleback/distribution/check_distribution.h"
 #include "saddleback/distribution/distribution.h"
 #include "saddleback/distribution/safe_distance.h"

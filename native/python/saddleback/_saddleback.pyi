@@ -1645,6 +1645,72 @@ def polar_coordinates(
     """
 
 @final
+class StrokeMap:
+    """The surface about a curve, laid flat without folds; made by `stroke_map`."""
+    @property
+    def vertices(self) -> _Floats:
+        """(n, 3) float64: of the patch, in space."""
+    @property
+    def triangles(self) -> _Indices:
+        """(m, 3) int32: of the patch, oriented as the mesh; those right of the curve come first."""
+    @property
+    def uv(self) -> _Floats:
+        """(n, 2) float64: along the curve, 0 to `length`, and distance from it, positive on its left; mesh units."""
+    @property
+    def points(self) -> SurfacePoints:
+        """SurfacePoints (n): the vertices on the mesh."""
+    @property
+    def face_origin(self) -> _Indices:
+        """(m,) int32: face of the mesh that each triangle is a part of."""
+    @property
+    def length(self) -> float:
+        """Of the curve, mesh units."""
+    @property
+    def area(self) -> float:
+        """Of the patch, square mesh units."""
+    @property
+    def coverage(self) -> float:
+        """Share that the patch is of all that lies beside the curve within the radius."""
+    def __len__(self) -> int: ...
+
+def stroke_map(
+    mesh: Mesh,
+    curve: SurfaceCurve | GeodesicPath | _Points,
+    radius: SupportsFloat,
+    *,
+    job: Job | None = None,
+) -> StrokeMap:
+    """Map the surface beside a curve one to one to the plane, for pictures along it.
+
+    `polar_coordinates` tells the truth about single vertices, but whole triangles fold where ways from two parts of the
+    curve meet, and have no width about its bends and behind saddle vertices. Here none does: the patch is cut along the
+    curve, across its ends at right angles, at the radius and along the cut locus, and large faces are divided. The distance
+    is exact at the mesh's vertices, up to 1e-4 of the radius, and linear between them; the coordinate along the curve is the arc length on it, and off
+    it harmonic, so that it passes over bends and bumps smoothly.
+
+    Args:
+        mesh: the Mesh.
+        curve: a SurfaceCurve, a GeodesicPath, or its points as a SurfacePoints or vertices (taken as an open curve). A
+            closed one is cut open where it starts.
+        radius: mesh units, finite and above 0.
+        job: progress and cancellation.
+
+    Returns:
+        A StrokeMap: a triangle mesh on the surface with a place in the plane for every vertex. All its triangles have
+        the same orientation there, by exact sign, and no two overlap. Left out is what lies beyond the ends of the curve and
+        what no such map holds, about places where the distance is largest; `coverage` tells how much is there.
+
+    Raises:
+        InputError: a radius that is not finite and above 0, no curve, a curve of another mesh, a curve that crosses or
+            touches itself (the message tells where).
+        Cancelled: the job was.
+
+    Notes:
+        O(n^1.5) for n vertices of the patch, and O(F). Fermi coordinates as in [ying2014] sections 6.1 to 6.3, by convex
+        combinations [tutte1963], [floater2003] that keep the distances of exact windows.
+    """
+
+@final
 class VoronoiEdge:
     """The boundary between two cells, or a part of it."""
     @property

@@ -55,6 +55,7 @@ def made() -> dict[str, Any]:
         sb.trace(mesh, 40, 0.3, 0.2),
         graph.log_map(40, 0.3),
         sb.polar_coordinates(graph, curve, 0.3),
+        sb.stroke_map(mesh, curve, 0.3),
         cells,
         cells.edges[0],
         cells.split(),

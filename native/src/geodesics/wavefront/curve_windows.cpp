@@ -16,7 +16,12 @@ constexpr double k_on_curve = 1e-13;
 
 Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
 
-/// The segment's end as a point, exactly at a vertex or on an edge where it is but for rounding.
+RayWindow rays_from_foot(double along, int side) {
+  return {Vec2::Zero(), 0, 0, 0, along, k_none, Rays::from_foot, static_cast<std::int8_t>(side), false};
+}
+
+}  // namespace
+
 SurfacePoint end_point(const CurveSegment& segment, bool at_begin) {
   SurfacePoint point{segment.face, at_begin ? segment.begin : segment.end};
   for (int i = 0; i < 3; ++i)
@@ -25,19 +30,12 @@ SurfacePoint end_point(const CurveSegment& segment, bool at_begin) {
   return point;
 }
 
-/// The direction in which the segment leaves one of its ends.
 double direction_of(const Mesh& mesh, const DirectionsAtPoint& star, const CurveSegment& segment, bool at_begin) {
   const FaceChart chart(mesh, segment.face);
   Vec2 along = chart.to_plane(segment.end) - chart.to_plane(segment.begin);
   if (!at_begin) along = -along;
   return star.angle_of(segment.face, std::atan2(along.y(), along.x()));
 }
-
-RayWindow rays_from_foot(double along, int side) {
-  return {Vec2::Zero(), 0, 0, 0, along, k_none, Rays::from_foot, static_cast<std::int8_t>(side), false};
-}
-
-}  // namespace
 
 void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
                               const JobStage& stage, const WatchedPlaces* places, const ReportRays& report) {

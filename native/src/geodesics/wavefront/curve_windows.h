@@ -6,6 +6,7 @@
 
 #include "saddleback/mesh/surface_curve.h"
 
+#include "geodesics/wavefront/directions_at_point.h"
 #include "geodesics/wavefront/wavefront_distances.h"
 
 namespace saddleback {
@@ -26,6 +27,12 @@ struct BorderPart {
   std::int8_t side;  ///< of the area: 1 left of the curve, -1 right, where the border runs against the curve
   Index start = k_none, end = k_none;
 };
+
+/// The segment's end as a point, exactly at a vertex or on an edge where it is but for rounding.
+SurfacePoint end_point(const CurveSegment& segment, bool at_begin);
+
+/// The direction in which the segment leaves one of its ends.
+double direction_of(const Mesh& mesh, const DirectionsAtPoint& star, const CurveSegment& segment, bool at_begin);
 
 /// Sends rays from a curve: at right angles to both sides of every segment, fans where it bends and at its ends. Holds
 /// scratch memory of O(V + F); one a thread.

@@ -22,8 +22,8 @@ Vec3 from_weights(const Vec2& w) { return {1 - w.x() - w.y(), w.x(), w.y()}; }
 }  // namespace
 
 BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-                         std::span<const SurfaceCurve* const> curves)
-    : mesh_(mesh) {
+                         std::span<const SurfaceCurve* const> curves, const char* only)
+    : mesh_(mesh), only_(only), lines_(curves.size()) {
   points_.reserve(static_cast<std::size_t>(mesh.vertex_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) points_.push_back(at_vertex(mesh, v));
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(static_cast<Index>(i), *curves[i]);
@@ -42,6 +42,7 @@ void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
   for (std::size_t i = 0; i < pieces_.size();) {
     const Index curve = pieces_[i].curve, first = pieces_[i].from;
     std::unordered_set<Index> passed{first};
+    lines_[curve].push_back(first);
     for (; i < pieces_.size() && pieces_[i].curve == curve; ++i) {
       const bool is_last = i + 1 == pieces_.size() || pieces_[i + 1].curve != curve;
       follow(pieces_[i], chain);
@@ -49,6 +50,7 @@ void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
         const bool closes = is_last && k + 1 == chain.size() && curves[curve]->closed() && chain[k] == first;
         if (!passed.insert(chain[k]).second && !closes) refuse(curve, chain[k]);
         add_edge({pieces_[i].face, chain[k - 1], chain[k]});
+        lines_[curve].push_back(chain[k]);
       }
     }
   }
@@ -220,6 +222,9 @@ void BarrierCuts::follow(const Piece& piece, std::vector<Index>& chain) const {
 
 void BarrierCuts::refuse(Index curve, Index node) const {
   const Vec3 place = position(mesh_, points_[node]);
+  if (only_)
+    throw InputError(message(only_, " crosses or touches itself at (", place.x(), ", ", place.y(), ", ", place.z(),
+                             "); give it as two curves"));
   throw InputError(message("curves: curve ", curve, " crosses or touches itself at (", place.x(), ", ", place.y(), ", ",
                            place.z(), ") in face ", points_[node].face, "; give it as two curves"));
 }

@@ -20,14 +20,17 @@ namespace saddleback {
 /// node in its middle.
 class BarrierCuts {
  public:
-  /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where.
+  /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where and,
+  /// unless `only` names the only one that can, which.
   BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-              std::span<const SurfaceCurve* const> curves);
+              std::span<const SurfaceCurve* const> curves, const char* only = nullptr);
 
   /// All nodes on the mesh.
   const SurfacePoints& points() const { return points_; }
   /// Tells whether the edge between two nodes is a barrier.
   bool is_barrier(Index a, Index b) const { return barriers_.contains(edge_key(a, b)); }
+  /// The nodes that a curve passes, in order; the first once more where a closed one ends.
+  const std::vector<Index>& line(std::size_t curve) const { return lines_[curve]; }
   /// Tells whether there are nodes in or on the face beside its corners.
   bool is_cut(Index face) const;
   /// The triangles that the face has become, as nodes. \throw InputError where curves meet too narrowly.
@@ -67,10 +70,12 @@ class BarrierCuts {
   [[noreturn]] void refuse(Index curve, Index node) const;
 
   const Mesh& mesh_;
+  const char* only_;
   SurfacePoints points_;
   std::vector<Piece> pieces_;                               ///< in the order along the curves
   std::unordered_map<Index, std::vector<Index>> inside_;    ///< nodes within a face
   std::unordered_map<Index, std::vector<OnEdge>> on_edge_;  ///< by the half-edge that speaks for it, ascending
+  std::vector<std::vector<Index>> lines_;                   ///< nodes of the curves
   std::vector<Edge> edges_;                                 ///< that are barriers, each once
   std::unordered_set<std::uint64_t> barriers_;              ///< keys of these
   std::unordered_map<Index, std::vector<Edge>> edges_in_;   ///< of these, by face

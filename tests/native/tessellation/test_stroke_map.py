@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Maps along curves: a straight strip, a circle, a bent stroke on a solid, and curves that are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+from tests.truth.ways import flipped, overlapping
+
+GRID = sb.Mesh(*meshes.grid(21, 21))
+
+
+def circle(radius: float, count: int = 48) -> sb.SurfaceCurve:
+    """A closed polygon about the middle of the grid, straight from corner to corner."""
+    turn = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    places = np.column_stack([0.5 + radius * np.cos(turn), 0.5 + radius * np.sin(turn), np.zeros(count)])
+    points = sb.project(GRID, places)
+    ways = [sb.ExactField(GRID, points[i]).path(points[(i + 1) % count]).surface for i in range(count)]
+    faces, weights = (np.concatenate([getattr(way, name) for way in ways])[:-1] for name in ("faces", "barycentric"))
+    return sb.SurfaceCurve(GRID, sb.SurfacePoints(faces, weights), closed=True)
+
+
+def test_a_straight_strip_is_nearly_the_plane_itself():
+    row = np.arange(21 * 10 + 4, 21 * 10 + 17, dtype=np.int32)
+    found = sb.stroke_map(GRID, row, 0.17)
+    np.testing.assert_allclose(found.uv[:, 1], found.vertices[:, 1] - 0.5, atol=1e-5)
+    # Weights of edges that are not Delaunay are raised, which moves vertices along the curve by some of an edge.
+    np.testing.assert_allclose(found.uv[:, 0], found.vertices[:, 0] - 0.2, atol=0.1 * 0.17)
+    assert found.area == pytest.approx(0.6 * 0.34, rel=1e-3)
+    assert found.coverage == pytest.approx(1, abs=1e-3)
+    assert found.length == pytest.approx(0.6)
+    assert flipped(found) == overlapping(found) == 0
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.2])
+def test_a_circle_is_cut_open_and_its_left_is_within(radius: float):
+    found = sb.stroke_map(GRID, circle(0.25), radius)
+    assert flipped(found) == overlapping(found) == 0
+    assert found.coverage > 0.99
+    from_center = np.hypot(*(found.vertices[:, :2] - 0.5).T)
+    # Corners and sides of the polygon differ by 6e-4, chords of the sheet's edges by as much again.
+    np.testing.assert_allclose(found.uv[:, 1], 0.25 - from_center, atol=0.02 * radius + 1e-3)
+    turn = np.arctan2(*(found.vertices[:, :2] - 0.5).T[::-1]) % (2 * np.pi)
+    inner = (turn > 0.3) & (turn < 6.0) & (np.abs(found.uv[:, 1]) < 0.1)
+    # As above: by .028 of the length at most.
+    np.testing.assert_allclose(found.uv[inner, 0] / found.length, turn[inner] / (2 * np.pi), atol=0.03)
+
+
+def test_a_stroke_that_bends_on_a_solid():
+    mesh = sb.Mesh(*meshes.icosphere(3))
+    graph = sb.SaddleVertexGraph(mesh)
+    there, back = graph.path(0, 40).surface, graph.path(40, 7).surface
+    curve = sb.SurfaceCurve(
+        mesh,
+        sb.SurfacePoints(
+            np.concatenate([there.faces, back.faces]), np.concatenate([there.barycentric, back.barycentric])
+        ),
+    )
+    for radius in (0.05, 0.3, 5.0):
+        found = sb.stroke_map(mesh, curve, radius)
+        assert flipped(found) == overlapping(found) == 0
+        assert found.coverage > 0.95
+        assert np.array_equal(np.unique(found.triangles), np.arange(len(found.vertices)))
+        np.testing.assert_allclose(found.points.positions(mesh), found.vertices, atol=1e-9)
+
+
+@pytest.mark.parametrize("radius", [0.0, -1.0, np.inf, np.nan])
+def test_a_radius_that_is_none(radius: float):
+    with pytest.raises(sb.InputError, match="radius: wanted a finite distance above 0"):
+        sb.stroke_map(GRID, [0, 1], radius)
+
+
+def test_a_curve_that_crosses_itself_is_told_where():
+    corners = np.array([[0.2, 0.21, 0], [0.8, 0.8, 0], [0.8, 0.2, 0], [0.2, 0.8, 0]])
+    points = sb.project(GRID, corners)
+    ways = [sb.ExactField(GRID, points[i]).path(points[i + 1]).surface for i in range(3)]
+    faces, weights = (np.concatenate([getattr(way, name) for way in ways]) for name in ("faces", "barycentric"))
+    curve = sb.SurfaceCurve(GRID, sb.SurfacePoints(faces, weights))
+    with pytest.raises(
+        sb.InputError, match=r"curve: it crosses or touches itself at \(0\.497\d*, 0\.502\d*, 0\); give"
+    ):
+        sb.stroke_map(GRID, curve, 0.1)
+
+
+def test_a_curve_of_another_mesh():
+    other = sb.Mesh(*meshes.grid(4, 4))
+    with pytest.raises(sb.InputError, match="curve: it lies on another mesh"):
+        sb.stroke_map(GRID, sb.SurfaceCurve(other, [0, 1]), 0.1)
