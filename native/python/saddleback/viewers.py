@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import ctypes
-import importlib.metadata
 import itertools
 import os
 import sys
@@ -149,6 +147,9 @@ def _can_vtk_draw() -> bool:
     """Without a display VTK dies by a signal unless it finds one of these libraries or brings its own."""
     if sys.platform != "linux" or os.environ.get("DISPLAY"):
         return True
+    import ctypes
+    import importlib.metadata  # slow, and not wanted for what does not draw
+
     for name in ("libEGL.so.1", "libOSMesa.so.8"):
         try:
             ctypes.CDLL(name)
