@@ -23,7 +23,7 @@ from pathlib import Path
 import bpy
 
 PICTURES = {".png": "PNG", ".exr": "OPEN_EXR"}
-KINDS = ("repair", "distance", "path", "tessellate", "voronoi_2d", "direction_field", "distribute")
+KINDS = ("repair", "distance", "path", "ribbon", "tessellate", "voronoi_2d", "direction_field", "distribute")
 
 
 def frames_of(text: str) -> list[int]:

@@ -36,6 +36,7 @@ OPERATORS = (
     "tessellate",
     "distance",
     "path",
+    "ribbon",
     "direction_field",
     "distribute",
     "check_distribution",

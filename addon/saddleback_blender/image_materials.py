@@ -11,12 +11,12 @@ PICTURE = "picture"  # begins the kind of such a material
 
 
 def image_material(
-    image: bpy.types.Image, uv_map: str, color: tuple[float, ...], is_transparent: bool
+    image: bpy.types.Image, uv_map: str, color: tuple[float, ...], is_transparent: bool, is_repeated: bool = False
 ) -> bpy.types.Material:
     """A material that shows an image on a UV map. Where that is transparent, it lets through what lies behind, or has
-    the color, as it has where Blender shows no textures.
+    the color, as it has where Blender shows no textures. A repeated one goes on beyond the image's border.
     """
-    kind = f"{PICTURE} {uv_map}{'' if is_transparent else ' opaque'}"
+    kind = f"{PICTURE} {uv_map}{'' if is_transparent else ' opaque'}{' repeated' if is_repeated else ''}"
     for material in bpy.data.materials:
         if material.get(nodes.MARK) == kind and material.library is None and _shows(material, image):
             return material
@@ -24,7 +24,8 @@ def image_material(
     tree = material.node_tree
     places, texture = tree.nodes.new("ShaderNodeUVMap"), tree.nodes.new("ShaderNodeTexImage")
     places.uv_map, texture.image = uv_map, image
-    texture.extension = "EXTEND"  # its border is the shape's, and shall not have the opposite one's colors
+    # The border of a single image is the shape's, and shall not have the opposite one's colors.
+    texture.extension = "REPEAT" if is_repeated else "EXTEND"
     places.location, texture.location = (-660, 300), (-460, 300)
     tree.links.new(places.outputs["UV"], texture.inputs["Vector"])
     if is_transparent:

@@ -139,11 +139,23 @@ def seed():
     return add_object("Seed", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], active=False)
 
 
+def stroke(item):
+    curve = bpy.data.curves.new("Stroke", "CURVE")
+    curve.dimensions = "3D"
+    points = curve.splines.new("POLY").points
+    points.add(1)
+    points[0].co, points[1].co = (1, 0, 0, 1), (0, 1, 0, 1)
+    line = bpy.data.objects.new("Stroke", curve)
+    line.parent = item
+    bpy.context.scene.collection.objects.link(line)
+
+
 def host():
     item = sphere("Ball", 2)
     item.data.materials.append(bpy.data.materials.new("Skin"))
     item.vertex_groups.new(name="Up").add([0, 1, 2], 1.0, "REPLACE")
     seed()
+    stroke(item)
     bpy.context.view_layer.objects.active = item
     select(item, [0, 20])
     return item
@@ -161,6 +173,7 @@ RUNS = [
     ("distance", {}, {"make_isolines": True, "make_preview": True}),
     ("distance", {"make_isolines": True, "make_preview": True}, {"make_preview": False}),
     ("path", {}, {"k": 20}),
+    ("ribbon", {}, {"show": "OBJECT", "ribbon_object": "Seed"}),
     ("direction_field", {}, {"make_arrows": False, "make_streamlines": True}),
     ("voronoi_2d", {"animate": True}, {"make_cells": True, "animate": True}),
     ("distribute", {"count": 5, **SHAPES}, {"count": 6, **SHAPES, **EVERY}),

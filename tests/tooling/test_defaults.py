@@ -23,6 +23,7 @@ SETTINGS = {
     "tessellate": kept.TessellateSettings,
     "distance": kept.DistanceSettings,
     "path": kept.PathSettings,
+    "ribbon": kept.RibbonSettings,
     "voronoi_2d": kept.Voronoi2dSettings,
     "direction_field": kept.DirectionFieldSettings,
     "distribute": kept.DistributeSettings,
@@ -132,7 +133,7 @@ def alike(ours: Any, theirs: Any) -> bool:
     return ours.lower() == str(theirs).lower() if isinstance(ours, str) else bool(ours == theirs)
 
 
-@pytest.mark.parametrize("operator", SETTINGS)
+@pytest.mark.parametrize("operator", CALLED)
 def test_the_addon_begins_as_the_library_does(operator):
     theirs = library_defaults(operator)
     ours = {field.name: field.default for field in fields(SETTINGS[operator]) if field.name in theirs}

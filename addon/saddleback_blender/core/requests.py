@@ -23,10 +23,11 @@ from .settings import (
     DistanceSettings,
     DistributeSettings,
     PathSettings,
+    RibbonSettings,
     TessellateSettings,
     Voronoi2dSettings,
 )
-from .shapes.shape_templates import ShapeTemplate
+from .shapes.shape_templates import ShapeTemplate, Solid
 from .solids.cell_mesh import CellShape
 
 Number = TypeVar("Number", bound=np.generic)
@@ -268,6 +269,18 @@ class PathRequest:
     points: Points
     threads: int = 0
     disk: DiskCache | None = None
+
+
+@dataclass(frozen=True)
+class RibbonRequest:
+    """Bands along curves that are brought to the surface."""
+
+    surface: Surface
+    settings: RibbonSettings
+    curves: tuple[Polyline, ...]
+    aspect: float = 1.0  # how many times as long as wide is what a band shows
+    solid: Solid | None = None  # laid on the bands; None: the bands themselves are seen
+    threads: int = 0
 
 
 @dataclass(frozen=True)

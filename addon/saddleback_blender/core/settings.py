@@ -177,6 +177,24 @@ class PathSettings(RegionSettings, BarrierSettings):
 
 
 @dataclass(frozen=True)
+class RibbonSettings(RegionSettings, BarrierSettings):
+    """All properties of `saddleback.ribbon`; lengths are world units, objects are given by name ("" = none)."""
+
+    curves_object: str = ""
+    curves_collection: str = ""  # "" = the curves parented to the object
+    show: str = "BAND"  # BAND, IMAGE, OBJECT
+    image_name: str = ""
+    ribbon_object: str = ""
+    repeat: str = "REPEAT"  # REPEAT = as often as keeps the proportions, STRETCH = once
+    use_modifiers: bool = False
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of the model's extent
+    width: float = 0.2
+    width_share: float = 6.0
+    lift: float = 0.005  # how far above the surface
+    lift_share: float = 0.15
+
+
+@dataclass(frozen=True)
 class Voronoi2dSettings(RegionSettings):
     """All properties of `saddleback.voronoi_2d`; lengths are world units, objects are given by name ("" = none)."""
 

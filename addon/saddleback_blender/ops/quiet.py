@@ -21,6 +21,7 @@ from .direction_field import FieldOperator, SADDLEBACK_OT_direction_field
 from .distance import DistanceOperator, SADDLEBACK_OT_distance
 from .distribute import SADDLEBACK_OT_distribute, ShapesOperator
 from .path import PathOperator, SADDLEBACK_OT_path
+from .ribbon import RibbonOperator, SADDLEBACK_OT_ribbon
 from .tessellate import CellsOperator, SADDLEBACK_OT_tessellate
 from .voronoi_2d import PlaneOperator, SADDLEBACK_OT_voronoi_2d
 
@@ -30,6 +31,7 @@ KINDS: dict[str, tuple[type[SurfaceOperator], Any]] = {
     "tessellate": (CellsOperator, SADDLEBACK_OT_tessellate),
     "distance": (DistanceOperator, SADDLEBACK_OT_distance),
     "path": (PathOperator, SADDLEBACK_OT_path),
+    "ribbon": (RibbonOperator, SADDLEBACK_OT_ribbon),
     "voronoi_2d": (PlaneOperator, SADDLEBACK_OT_voronoi_2d),
     "distribute": (ShapesOperator, SADDLEBACK_OT_distribute),
 }

@@ -14,6 +14,7 @@ ROWS = {
     "tessellate": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "inset", "instance_scale"),
     "distance": ("isoline_count", "isoline_radius", "preview_lines", "limit"),
     "path": ("path_radius", "lift", "connect", "shorten"),
+    "ribbon": ("width", "lift", "show", "repeat"),
     "voronoi_2d": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "instance_size", "instance_scale"),
     "direction_field": ("symmetry", "align", "turn", "arrow_count", "streamline_spacing", "streamline_radius"),
     "distribute": ("count", "seed", "size", "packing", "gap", "outline_radius"),

@@ -23,6 +23,7 @@ from ..core.settings import (
     DistributeSettings,
     PathSettings,
     RepairSettings,
+    RibbonSettings,
     TessellateSettings,
     Voronoi2dSettings,
 )
@@ -35,6 +36,7 @@ from .kept_sites import SITES
 from .path import PATH, PATH_BEGIN
 from .region import LAYER_SETTINGS
 from .repair import REPAIR
+from .ribbon import RIBBON, RIBBON_BEGIN
 from .tessellate import EVENNESS, TESSELLATE, TESSELLATE_BEGIN
 from .voronoi_2d import VORONOI_2D, VORONOI_2D_BEGIN
 
@@ -43,6 +45,7 @@ Settings = TypeVar(
     TessellateSettings,
     DistanceSettings,
     PathSettings,
+    RibbonSettings,
     Voronoi2dSettings,
     DirectionFieldSettings,
     DistributeSettings,
@@ -52,7 +55,15 @@ Settings = TypeVar(
 
 # An operator names objects by strings, so that scripts and presets can; the object itself keeps pointers, which survive
 # renaming. These names are pointers on the object and strings on the operator.
-OBJECT_NAMES = ("sites_object", "instance_object", "sources_object", "strokes_object", "density_object")
+OBJECT_NAMES = (
+    "sites_object",
+    "instance_object",
+    "sources_object",
+    "strokes_object",
+    "density_object",
+    "curves_object",
+    "ribbon_object",
+)
 COLLECTION_NAMES = (
     "sources_collection",
     "points_collection",
@@ -60,6 +71,7 @@ COLLECTION_NAMES = (
     "singularities_collection",
     "density_collection",
     "shapes_collection",
+    "curves_collection",
 )
 IMAGE_NAMES = ("image_name", "density_image", "shapes_image", "direction_image", "painted_image")
 TOLD, FIGURES = "told", "figures"  # on each group: what the last run said of the object, a sentence a line
@@ -70,6 +82,7 @@ PROPERTIES = {
     "tessellate": TESSELLATE,
     "distance": DISTANCE,
     "path": PATH,
+    "ribbon": RIBBON,
     "voronoi_2d": VORONOI_2D,
     "direction_field": DIRECTION_FIELD,
     "distribute": DISTRIBUTE,
@@ -81,6 +94,7 @@ BEGIN: dict[str, dict[str, Any]] = {
     "tessellate": TESSELLATE_BEGIN,
     "distance": DISTANCE_BEGIN,
     "path": PATH_BEGIN,
+    "ribbon": RIBBON_BEGIN,
     "voronoi_2d": VORONOI_2D_BEGIN,
     "direction_field": DIRECTION_FIELD_BEGIN,
     "distribute": DISTRIBUTE_BEGIN,
@@ -139,6 +153,12 @@ class SaddlebackPathProps(bpy.types.PropertyGroup):
     __annotations__ = _kept("path")
 
 
+class SaddlebackRibbonProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.ribbon`."""
+
+    __annotations__ = _kept("ribbon")
+
+
 class SaddlebackVoronoi2dProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.voronoi_2d`."""
 
@@ -181,6 +201,7 @@ class SaddlebackLayer(bpy.types.PropertyGroup):
             "tessellate": SaddlebackTessellateProps,
             "distance": SaddlebackDistanceProps,
             "path": SaddlebackPathProps,
+            "ribbon": SaddlebackRibbonProps,
             "voronoi_2d": SaddlebackVoronoi2dProps,
             "direction_field": SaddlebackDirectionFieldProps,
             "distribute": SaddlebackDistributeProps,
@@ -196,6 +217,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "tessellate": PointerProperty(type=SaddlebackTessellateProps),
         "distance": PointerProperty(type=SaddlebackDistanceProps),
         "path": PointerProperty(type=SaddlebackPathProps),
+        "ribbon": PointerProperty(type=SaddlebackRibbonProps),
         "voronoi_2d": PointerProperty(type=SaddlebackVoronoi2dProps),
         "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
         "distribute": PointerProperty(type=SaddlebackDistributeProps),
@@ -218,6 +240,7 @@ CLASSES = (
     SaddlebackTessellateProps,
     SaddlebackDistanceProps,
     SaddlebackPathProps,
+    SaddlebackRibbonProps,
     SaddlebackVoronoi2dProps,
     SaddlebackDirectionFieldProps,
     SaddlebackDistributeProps,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panels of distances and paths."""
+"""The panels of distances, paths and ribbons."""
 
 from __future__ import annotations
 
@@ -112,6 +112,34 @@ class SADDLEBACK_PT_path_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
         layout.prop(settings, "use_modifiers")
 
 
+class SADDLEBACK_PT_ribbon(SaddlebackSubPanel, bpy.types.Panel):
+    """Bands along curves."""
+
+    bl_label = "Ribbon"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.ribbon
+        layout = self.split_layout(context)
+        draw_button(layout, context, "saddleback.ribbon", "MOD_CURVE")
+        draw_state(layout, context, "ribbon")
+        rows.draw_ribbon(layout.column(), settings)
+
+
+class SADDLEBACK_PT_ribbon_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How ribbons are measured."""
+
+    bl_parent_id = "SADDLEBACK_PT_ribbon"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.ribbon
+        layout = self.split_layout(context)
+        layout.prop(settings, "lengths")
+        layout.prop(settings, "use_modifiers")
+
+
 CLASSES = (
     SADDLEBACK_PT_distance,
     SADDLEBACK_PT_isolines,
@@ -119,4 +147,6 @@ CLASSES = (
     SADDLEBACK_PT_distance_advanced,
     SADDLEBACK_PT_path,
     SADDLEBACK_PT_path_advanced,
+    SADDLEBACK_PT_ribbon,
+    SADDLEBACK_PT_ribbon_advanced,
 )

@@ -420,6 +420,23 @@ def draw_path_points(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
         layout.prop(settings, "connect")
 
 
+def draw_ribbon(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Draws along which curves ribbons are laid, and what they show."""
+    row = layout.row(align=True)
+    draw_object(row, settings, "curves_object")
+    row.operator("saddleback.draw_strokes", text="", icon="CURVE_BEZCURVE").pen = "CURVE"
+    if not settings.curves_object:
+        draw_collection(layout, settings, "curves_collection")
+    layout.prop(settings, "show")
+    if settings.show == "IMAGE":
+        draw_pointer(layout, settings, "image_name", "images")
+    elif settings.show == "OBJECT":
+        draw_object(layout, settings, "ribbon_object")
+    draw_length(layout, settings, "width")
+    draw_length(layout, settings, "lift")
+    layout.prop(settings, "repeat")
+
+
 def draw_collection(layout: bpy.types.UILayout, settings: Any, name: str) -> None:
     """A choice among collections."""
     draw_pointer(layout, settings, name, "collections")

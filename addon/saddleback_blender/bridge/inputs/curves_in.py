@@ -19,25 +19,29 @@ from .evaluated import evaluated
 from .mesh_in import to_world
 
 
-def read_curves(source: bpy.types.Object, name: str, collection: str) -> tuple[Polyline, ...]:
+def read_curves(
+    source: bpy.types.Object, name: str, collection: str, purpose: str = "to measure from"
+) -> tuple[Polyline, ...]:
     """The splines of one curve object, of all in a collection or, without either, of those parented to the source."""
-    items, where = _curve_objects(source, name, collection)
+    items, where = _curve_objects(source, name, collection, purpose)
     lines = tuple(line for item in items for line in polylines_of(item))
     if not lines:
-        raise BadInputError(f"'{source.name}': {where} has no spline of two points to measure from; draw one")
+        raise BadInputError(f"'{source.name}': {where} has no spline of two points {purpose}; draw one")
     for line in lines:
         if not np.isfinite(line.points).all():
             raise BadInputError(f"'{source.name}': {where} has a point that is not at a finite place; move it")
     return lines
 
 
-def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tuple[list[bpy.types.Object], str]:
+def _curve_objects(
+    source: bpy.types.Object, name: str, collection: str, purpose: str
+) -> tuple[list[bpy.types.Object], str]:
     if name:
         item = find(bpy.data.objects, name)
         if item is None:
-            raise BadInputError(f"'{source.name}': there is no object '{name}' to measure from; choose a curve")
+            raise BadInputError(f"'{source.name}': there is no object '{name}' {purpose}; choose a curve")
         if not is_curve(item):
-            raise BadInputError(f"'{source.name}': '{name}' is no curve object; choose a curve to measure from")
+            raise BadInputError(f"'{source.name}': '{name}' is no curve object; choose a curve {purpose}")
         return [item], f"'{name}'"
     if collection:
         group = find(bpy.data.collections, collection)
@@ -52,7 +56,7 @@ def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tupl
     curves = [item for item in candidates if is_curve(item) and SOURCE not in item]
     if not curves:
         place = f"in collection '{collection}'" if collection else f"parented to '{source.name}'"
-        raise BadInputError(f"'{source.name}': no curve is {place}; choose one to measure from")
+        raise BadInputError(f"'{source.name}': no curve is {place}; choose one {purpose}")
     return sorted(curves, key=lambda item: item.name_full), where
 
 

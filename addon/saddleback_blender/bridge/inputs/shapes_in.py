@@ -121,13 +121,20 @@ def _center(parts: Parts) -> Reals:
 
 def _of_mesh(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, Solid]:
     """The outline of what is seen from above, in the object's scale, and the mesh itself."""
+    solid = read_solid(context, source, item)
+    return _outline(solid.vertices, solid.corners[solid.parted()]), solid
+
+
+def read_solid(
+    context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object, what: str = "shape"
+) -> Solid:
+    """The faces of an object of whatever kind, in its own space and scale. Raises BadInputError without any."""
     with modified(context, item) as (shown, mesh):
         vertices = compat.read_positions(mesh).astype(np.float64) * np.array(shown.matrix_world.to_scale()[:])
         triangles = read_triangles(mesh)
         if not len(triangles) or not np.isfinite(vertices).all():
-            raise BadInputError(f"'{source.name}': shape '{item.name}' has no faces; give it some, or take it away")
-        solid = _solid(mesh, vertices)
-    return _outline(vertices, triangles), solid
+            raise BadInputError(f"'{source.name}': {what} '{item.name}' has no faces; give it some, or take it away")
+        return _solid(mesh, vertices)
 
 
 def _of_instance(

@@ -63,7 +63,7 @@ def write_bent(
     assert bent is not None
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
-    _fill(mesh, to_place(place, bent.vertices), bent.corners, bent.offsets, bent.uv, bent.smooth)
+    fill(mesh, to_place(place, bent.vertices), bent.corners, bent.offsets, bent.uv, bent.smooth)
     random = random_numbers(result, settings.seed)
     set_attribute(mesh, SHAPE_ATTRIBUTE, "FACE", bent.polygon_copy)
     set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
@@ -220,7 +220,7 @@ def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate
     mesh = bpy.data.meshes.new(template.name)
     if template.solid is not None:
         solid = template.solid
-        _fill(mesh, solid.vertices, solid.corners, solid.offsets, solid.uv, solid.smooth)
+        fill(mesh, solid.vertices, solid.corners, solid.offsets, solid.uv, solid.smooth)
         color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
         rgba = np.append(_colors(np.array([number], np.int32), np.array([0.5]), look), 1.0)
         color.data.foreach_set("color", np.tile(rgba, len(solid.corners)).astype(np.float32))
@@ -237,9 +237,10 @@ def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate
     return item
 
 
-def _fill(
+def fill(
     mesh: bpy.types.Mesh, vertices: Reals, corners: Indices, offsets: Indices, uv: Reals, smooth: np.ndarray
 ) -> None:
+    """Gives a new mesh its faces: polygon i runs through corners[offsets[i]:offsets[i + 1]]."""
     mesh.vertices.add(len(vertices))
     mesh.vertices.foreach_set("co", vertices.astype(np.float32).ravel())
     compat.write_polygons(mesh, corners, offsets)
@@ -255,7 +256,7 @@ def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
     flat = np.concatenate(loops)
     vertices = np.column_stack([flat, np.full(len(flat), 0.02)])
     corners = np.arange(len(flat), dtype=np.int32)
-    _fill(mesh, vertices, corners, offsets, template.uv_of(flat), np.zeros(len(loops), bool))
+    fill(mesh, vertices, corners, offsets, template.uv_of(flat), np.zeros(len(loops), bool))
 
 
 def random_numbers(result: DistributeResult, seed: int) -> Reals:
@@ -299,10 +300,11 @@ def _own_materials(template: ShapeTemplate, is_cut: bool = False) -> list[bpy.ty
         return [image_material(image, UV_NAME, picture.color, is_transparent=True), opaque]
     if template.materials:
         return [find(bpy.data.materials, name) for name in template.materials]
-    return _materials(find(bpy.data.objects, template.source))
+    return materials_of(find(bpy.data.objects, template.source))
 
 
-def _materials(item: bpy.types.Object | None) -> list[bpy.types.Material | None]:
+def materials_of(item: bpy.types.Object | None) -> list[bpy.types.Material | None]:
+    """The materials that the faces of an object show, by their index; none where it has no faces."""
     if item is None or item.type not in ("MESH", "FONT"):
         return []
     with modified(bpy.context, item) as (shown, mesh):

@@ -152,7 +152,7 @@ def _raised(
     places, triangles = np.asarray(patch.vertices), np.asarray(patch.triangles)
     points = patch.surface
     up = normals_at(mesh.vertices, mesh.triangles, points.faces, points.barycentric)
-    begin, end = _border(triangles)
+    begin, end = border(triangles)
     below = np.full(len(places), -1)
     rim = np.unique(np.concatenate([begin, end]))
     below[rim] = len(places) + np.arange(len(rim))
@@ -176,7 +176,7 @@ def _raised(
     )
 
 
-def _border(triangles: Indices) -> tuple[Indices, Indices]:
+def border(triangles: Indices) -> tuple[Indices, Indices]:
     """Begin and end of the edges that only one triangle has, as it runs through them."""
     begin, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     size = int(triangles.max(initial=0)) + 1
