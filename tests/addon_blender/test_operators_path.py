@@ -217,6 +217,27 @@ def test_a_selection_by_mistake_is_refused_at_once():
     refuse("all its 961 vertices are in the group", points="VERTEX_GROUP")
 
 
+def test_chains_may_be_smooth_and_rings_tight():
+    item = grid(n=10)
+    select(item, [24, 30, 90])
+    refuse("'Grid': nothing holds the closed chain", connect="LOOP", tighten=True)
+    bpy.ops.saddleback.path(connect="LOOP", smooth=True)
+    ((points, closed),) = splines(find_output(item, "paths"))
+    assert closed and length(points) > 2.1 and tuple(points[0]) != tuple(points[-1]) and item.saddleback.path.smooth
+    tube = add_object("Tube", *tube_arrays())
+    select(tube, [4, 5, 6, 7])
+    bpy.ops.saddleback.path(connect="LOOP", tighten=True, smooth=False)
+    assert find_output(tube, "paths")["saddleback_length"] == pytest.approx(8.0, rel=1e-5)
+
+
+def tube_arrays():
+    """A square tube of side 2 and height 3, open above and below."""
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    vertices = [(x, y, z) for z in range(4) for x, y in corners]
+    faces = [np.array([i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i]) + 4 * z for z in range(3) for i in range(4)]
+    return vertices, faces
+
+
 def test_from_the_cursor_to_the_farthest_point():
     item = grid(n=10)
     bpy.context.scene.cursor.location = (0.9, 1.2, 0.3)

@@ -141,6 +141,45 @@ def test_what_cannot_be_joined_is_refused():
                 paths(two, points, connect=connect)
 
 
+def hourglass():
+    vertices, triangles = meshes.cylinder(48, 41, 1.0, 3.0)
+    vertices[:, 2] -= vertices[:, 2].mean()
+    vertices[:, :2] *= 1.0 + 0.3 * vertices[:, 2:] ** 2
+    return Surface("Glass", vertices, triangles, len(vertices))
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_a_closed_chain_is_pulled_tight_around_the_waist(smooth):
+    surface = hourglass()
+    angle = np.linspace(0, 2 * np.pi, 5, endpoint=False)
+    places = np.column_stack([2 * np.cos(angle), 2 * np.sin(angle), 0.5 * np.sin(2 * angle) + 0.3])
+    loose, tight = (
+        paths(surface, places, connect="LOOP", smooth=smooth, tighten=tighten).lengths[0] for tighten in (False, True)
+    )
+    waist = 48 * 2 * np.sin(np.pi / 48)  # of the regular polygon at the narrowest height
+    assert tight == pytest.approx(waist, rel=1e-9) and loose > 1.05 * tight
+    result = paths(surface, places, connect="LOOP", smooth=smooth, tighten=True)
+    np.testing.assert_allclose(result.points[:, 2], 0.0, atol=1e-9)
+    assert length_of(result.points, closed=True) == pytest.approx(waist, rel=1e-9) and result.closed.all()
+
+
+def test_a_chain_that_nothing_holds_cannot_be_pulled_tight():
+    with pytest.raises(BadInputError, match=r"'Shape': nothing holds the closed chain, .* neck, a handle or a hole"):
+        paths(shapes.grid(15), PLACES, connect="LOOP", tighten=True)
+
+
+@pytest.mark.parametrize("quality", ["NORMAL", "EXACT"])
+def test_a_smooth_chain_passes_its_points_without_corners(quality):
+    (line,) = lines_of(paths(shapes.grid(15), PLACES, smooth=True, quality=quality))
+    assert max(np.linalg.norm(line - place, axis=1).min() for place in FLAT) < 1e-9
+    steps = np.diff(line, axis=0)
+    steps = steps[np.linalg.norm(steps, axis=1) > 1e-6]
+    steps /= np.linalg.norm(steps, axis=1)[:, None]
+    sharpest = np.einsum("ij,ij->i", steps[1:], steps[:-1]).min()
+    (corners,) = lines_of(paths(shapes.grid(15), PLACES, quality=quality))
+    assert sharpest > 0.9 and length_of(line) > length_of(corners)
+
+
 def test_cancelled_on_the_way():
     progress = runs.new_progress()
     progress.cancel()

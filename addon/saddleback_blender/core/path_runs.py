@@ -51,13 +51,23 @@ def paths(request: PathRequest, progress: Progress, cache: Cache | None = None) 
     def solve() -> PathsResult:
         if is_to_farthest:
             return _result(mesh, [_to_farthest(ways, mesh, points, progress)], False)
-        legs = list(_bounded(surface, _legs(ways, points, order, connect, progress)))
-        if connect == "PAIRS":
-            return _result(mesh, legs, False)
         closed = connect == "LOOP" and len(order) > 2
-        return _result(mesh, [_joined(legs, closed)], closed)
+        if settings.smooth and connect != "PAIRS":
+            guide = GraphChoice("FAST", 0) if choice.is_exact else choice
+            line = _smooth(
+                mesh, graph_of_surface(surface, mesh, guide, request.threads, request.disk, progress, cache),
+                _take(points, order), closed, progress,
+            )  # fmt: skip
+        else:
+            legs = list(_bounded(surface, _legs(ways, points, order, connect, progress)))
+            if connect == "PAIRS":
+                return _result(mesh, legs, False)
+            line = _joined(legs, closed)
+        if settings.tighten and closed:
+            line = _tight(surface, mesh, line, progress)
+        return _result(mesh, [line], closed)
 
-    how = connect, is_to_farthest, settings.shorten and not choice.is_exact
+    how = connect, is_to_farthest, settings.shorten and not choice.is_exact, settings.smooth, settings.tighten
     key = ("paths", choice.name(surface), digest(chosen, *how))
     result = cache.get(key, solve, lambda result: result.nbytes)
     progress.check()
@@ -175,6 +185,29 @@ def _joined(legs: list[_Line], closed: bool) -> _Line:
         np.concatenate([leg.barycentric[:end] for leg, end in zip(legs, ends, strict=True)]),
         sum(leg.length for leg in legs),
     )
+
+
+def _smooth(mesh: Any, graph: Any, points: Any, closed: bool, progress: Progress) -> _Line:
+    """The smooth curve through points."""
+    with progress.stage(0.9, "joining the points by a smooth curve") as job:
+        curve = native.load().curve_through(graph, points, closed=closed, smooth=True, job=job)
+    places = curve.points.positions(mesh)
+    end = -1 if closed and (places[0] == places[-1]).all() else None
+    return _Line(places[:end], curve.points.faces[:end], curve.points.barycentric[:end], float(curve.length))
+
+
+def _tight(surface: Surface, mesh: Any, line: _Line, progress: Progress) -> _Line:
+    """A closed line pulled tight without leaving its homotopy class. Raises BadInputError where nothing holds it."""
+    sb = native.load()
+    curve = sb.SurfaceCurve(mesh, sb.SurfacePoints(line.faces, line.barycentric), closed=True)
+    with progress.stage(0.98, "pulling the chain tight") as job:
+        path = sb.shorten_curve(curve, job=job)
+    if path.length == 0.0:
+        raise BadInputError(
+            f"'{surface.name}': nothing holds the closed chain, so that it contracts to a point when pulled tight; "
+            "lead it around a neck, a handle or a hole"
+        )
+    return _Line.of(path)
 
 
 def _result(mesh: Any, lines: list[_Line], closed: bool) -> PathsResult:

@@ -164,6 +164,8 @@ class PathSettings(RegionSettings, BarrierSettings):
     points_collection: str = ""
     from_cursor: bool = False  # the 3D cursor is a point, too: the first
     connect: str = "CHAIN"  # CHAIN, LOOP, PAIRS
+    smooth: bool = False  # of chains: without corners at their points
+    tighten: bool = False  # of a closed chain: to a closed geodesic
     shorten: bool = True
     quality: str = "NORMAL"  # FAST, NORMAL, FINE, EXACT
     k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality

@@ -38,6 +38,10 @@ PATH: dict[str, Any] = {
     "points_collection": name_of("Collection", "Its empties are connected; empty means those parented to the object"),
     "from_cursor": switch("From Cursor", "Begin at the point of the surface nearest to the 3D cursor", False),
     "connect": choice("Connect", "Which points a path joins", PATH_CONNECTIONS, "CHAIN"),
+    "smooth": switch("Smooth", "Let a chain pass its points without corners", False),
+    "tighten": switch(
+        "Pull Tight", "Pull a closed chain tight around what it encircles, until it is a closed geodesic", False
+    ),
     "shorten": switch("Shorten", "Pull each path straight where the distance graph bends it a little", True),
     "quality": quality((*QUALITIES, EXACT_QUALITY)),
     "k": detail(),

@@ -106,6 +106,12 @@ class SADDLEBACK_PT_path_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
         layout = self.split_layout(context)
         layout.prop(settings, "lengths")
         row = layout.row()
+        row.active = settings.connect != "PAIRS"
+        row.prop(settings, "smooth")
+        row = layout.row()
+        row.active = settings.connect == "LOOP"
+        row.prop(settings, "tighten")
+        row = layout.row()
         row.active = settings.k > 0 or settings.quality != "EXACT"  # exact paths are straight
         row.prop(settings, "shorten")
         rows.draw_quality(layout, settings)
