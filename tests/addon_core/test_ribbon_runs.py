@@ -201,6 +201,11 @@ def test_a_ribbon_follows_a_curve_that_is_cut_off_where_the_surface_ends_in_part
     line = Polyline(np.array([[low[0], y, 0.1], [high[0], y, 0.1]]), False)
     result = lay(surface_of(arrays), (line,), width=0.1)
     assert len(result.lengths) == 2 and (result.lengths > 0.5).all()
+    short = Polyline(line.points - [[0, 0, 0], [0.95 * np.ptp(meshes.grid(9, 9)[0][:, 0]), 0, 0]], False)
+    passing = lay(surface_of(arrays), (short,), width=0.3)
+    assert len(passing.lengths) == 1 and passing.lengths[0] > 0.5  # the other piece is shorter than wide
+    alone = lay(curves=(Polyline(np.array([[0.5, 0.5, 0.0], [0.55, 0.5, 0.0]]), False),))
+    assert alone.lengths == pytest.approx([0.05], rel=1e-9)  # and this one is wanted so
 
 
 def test_what_is_kept_is_not_made_again():

@@ -42,16 +42,22 @@ def ribbon_curves(
             )
         runs = _runs(mesh, points)
         is_closed = curve.closed and len(runs) == 1 and len(runs[0]) > 2
+        pieces = []
         for run in runs:
             if len(run) < 2:
                 continue
             with progress.stage(0.5 + 0.2 * (number + 1) / len(curves), "joining the curves on the surface") as job:
-                found.append(
+                pieces.append(
                     sb.curve_through(
                         graph, sb.SurfacePoints(points.faces[run], points.barycentric[run]), closed=is_closed,
                         smooth=True, halvings=HALVINGS, job=job,
                     )
                 )  # fmt: skip
+        # Between parts of the surface a curve touches some in passing.
+        long = [piece for piece in pieces if piece.length >= 2 * radius] or pieces
+        if len(long) < len(pieces):
+            progress.note(f"'{name}': pieces of curve {number + 1} that are shorter than wide are left out")
+        found += long
     if not found:
         raise BadInputError(f"'{name}': the curves are single points on the surface; draw longer ones")
     return found
