@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Curves pulled tight: what they wind about, and the angles on both sides of every one of their points.
+"""Curves pulled tight: what they wind about, and the angles on both sides of every one of their points. Distances from
+curves.
 
 Homotopic curves have the same integrals of closed forms. A curve is locally shortest where neither side has less than
 pi; at the border of the surface one side is outside.
@@ -15,6 +16,7 @@ from scipy.linalg import null_space
 
 import saddleback as sb
 from tests.truth.distances import Floats, Random, is_convex_and_flat, longest_edge
+from tests.truth.graph import ROUNDING, promised, random_rule
 from tests.truth.lines_and_maps import polyline_length
 from tests.truth.registry import guards
 from tests.truth.ways import assert_is_way, random_points
@@ -243,3 +245,49 @@ def drawn_curves(mesh: sb.Mesh, rng: Random) -> None:
         flat, line = halved(places, halvings), bezier.points.positions(mesh)
         assert distances_to_line(flat, line).max() <= 10 * size
         assert distances_to_line(line, flat).max() <= 10 * size
+
+
+@guards("SaddleVertexGraph.distances", "SaddleVertexGraph", "SurfaceCurve")
+def from_curves(mesh: sb.Mesh, rng: Random) -> None:
+    """Distances from a curve: graphs within their accuracy of exact distances from points all along it, which are
+    longer by less than half the way from one to the next; both as Euclid says on flat convex pieces of the plane.
+    """
+    if mesh.edge_lengths.min() < 1e-5 * longest_edge(mesh):
+        return  # exact distances take long
+    curve = random_curve(mesh, rng, closed=bool(rng.random() < 0.4))
+    if curve is None:
+        return
+    rule = random_rule(mesh, rng)
+    found = sb.SaddleVertexGraph(mesh, **rule, threads=1).distances(curve)
+    rounding = 1e-12 * longest_edge(mesh) + 1e-14 * np.abs(mesh.vertices).max()
+    line = curve.points.positions(mesh)
+    line = np.vstack([line, line[:1]]) if curve.closed else line
+    if is_convex_and_flat(mesh):
+        high = low = distances_to_line(mesh.vertices, line)
+    else:
+        faces, weights, apart = all_along(mesh, curve, 300)
+        high = sb.exact_distances(mesh, sb.SurfacePoints(faces, weights))
+        low = high - apart / 2
+    near = np.isfinite(high)
+    assert (np.isfinite(found) == near).all()
+    found, low, high = found[near], low[near], high[near]
+    under, over = low * (1 - ROUNDING) - rounding - found, found - high * (1 + ROUNDING) - rounding
+    assert (under <= 0).all(), f"{under.max()} too short, {rule}"
+    assert (over <= high * min(promised(rule), 1e3)).all(), f"{over.max()} too long, {rule}"
+
+
+def all_along(mesh: sb.Mesh, curve: sb.SurfaceCurve, count: int) -> tuple[NDArray[np.int32], Floats, float]:
+    """Points on every piece of a curve, as faces and barycentric coordinates, and how far they are apart at most."""
+    points, order = curve.points, [*range(len(curve.points)), *([0] if curve.closed else [])]
+    step, apart = curve.length / count, 0.0
+    faces, weights = [], []
+    for i, j in pairwise(order):
+        face = shared_face(mesh, points, i, j)
+        begin, end = (weights_in(mesh, points, k, face) for k in (i, j))
+        length = float(np.linalg.norm((end - begin) @ mesh.vertices[mesh.triangles[face]]))
+        pieces = max(1, int(np.ceil(length / step)))
+        apart = max(apart, length / pieces)
+        share = np.linspace(0, 1, pieces + 1)[:, None]
+        weights.append((1 - share) * begin + share * end)
+        faces.append(np.full(pieces + 1, face, np.int32))
+    return np.concatenate(faces), np.concatenate(weights), apart

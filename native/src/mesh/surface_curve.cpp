@@ -88,7 +88,10 @@ void SurfaceCurve::add_segment(std::size_t from, std::size_t to, const char* arg
   }
   CurveSegment segment{face, *barycentric_in(*mesh_, a, face, tolerance), *barycentric_in(*mesh_, b, face, tolerance),
                        length_, 0};
-  segment.length = (position(*mesh_, {face, segment.begin}) - position(*mesh_, {face, segment.end})).norm();
+  // By what the coordinates differ: places far from the origin are rounded, and one place would be two.
+  const Vec3 change = segment.end - segment.begin;
+  const auto corner = [&](int i) { return mesh_->position(mesh_->triangles()[face][i]); };
+  segment.length = (change[1] * (corner(1) - corner(0)) + change[2] * (corner(2) - corner(0))).norm();
   const Index h = 3 * face;
   const double longest = std::max({mesh_->length(h), mesh_->length(h + 1), mesh_->length(h + 2)});
   if (segment.length <= k_no_length * longest) return;

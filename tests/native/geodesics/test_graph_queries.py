@@ -7,6 +7,7 @@ import contextlib
 import itertools
 import threading
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -557,3 +558,32 @@ def test_a_query_after_stopped_ones_is_as_if_they_had_not_been() -> None:
                 ask(job)
             stop.join()
         assert np.array_equal(np.asarray(ask()), np.asarray(expected))
+
+
+@pytest.mark.parametrize("rule", [{"exact": True}, {"accuracy": 1e-3}, {"accuracy": 1e-2}], ids=str)
+@pytest.mark.parametrize(
+    "disk", [meshes.graded_disk(1e-2, 12, 10), meshes.graded_disk(1e-6, 14, 12)], ids=["few", "fine"]
+)
+def test_from_curves_where_edges_are_of_all_sizes(disk: meshes.Arrays, rule: dict[str, Any]) -> None:
+    """Rays from a curve go on through small faces, whose vertices do not see it through large ones."""
+    mesh = sb.Mesh(*disk)
+    graph = sb.SaddleVertexGraph(mesh, **rule)
+    for seed in range(5):
+        ends = sb.sample(mesh, 2, seed=seed)
+        curve = sb.SurfaceCurve(mesh, sb.ExactField(mesh, ends[0]).path(ends[1]).surface)
+        begin, end = ends.positions(mesh)
+        share = np.clip((mesh.vertices - begin) @ (end - begin) / ((end - begin) @ (end - begin)), 0, 1)
+        right = np.linalg.norm(mesh.vertices - begin - share[:, None] * (end - begin), axis=1)
+        np.testing.assert_allclose(graph.distances(curve), right, rtol=rule.get("accuracy", 1e-11), atol=1e-13)
+
+
+def test_from_a_curve_that_ends_at_a_tip() -> None:
+    """Rays at right angles to an edge that ends at a needle's tip have not gone round it yet."""
+    mesh = sb.Mesh(*meshes.spike_on_a_plate(5.0))
+    tip = mesh.vertex_count - 1
+    found = sb.SaddleVertexGraph(mesh, exact=True).distances(sb.SurfaceCurve(mesh, [0, tip]))
+    line = mesh.vertices[[0, tip]]
+    share = np.linspace(0, 1, 2001)[:, None]
+    dense = sb.project(mesh, (1 - share) * line[0] + share * line[1])
+    right = sb.exact_distances(mesh, dense)
+    np.testing.assert_allclose(found, right, rtol=1e-5, atol=1e-9)

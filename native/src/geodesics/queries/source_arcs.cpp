@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "geodesics/queries/query_cache.h"
@@ -16,11 +17,20 @@ namespace {
 // seen from the vertex in it whose ray passes nearest, by a detour the smaller the more vertices there are: twice the
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
+// That vertex is within half an edge of the way, which is longer by it by up to an eighth of an edge over the width: of
+// the accuracy this is the share that a strip of some width takes.
+constexpr double k_share_of_accuracy = 0.25;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
 constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
 constexpr double k_vertices_a_segment = 1;  ///< at least so many take as long, also where a curve runs along itself
 
-double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
+/// In edges; of an exact graph distances from curves are exact.
+double strip_width(const SaddleVertexGraph& graph) {
+  if (graph.is_exact()) return std::numeric_limits<double>::infinity();
+  const double accuracy = graph.accuracy();
+  return std::max(k_edges_an_arc * graph.mean_degree(),
+                  accuracy > 0 ? 1 / std::sqrt(8 * k_share_of_accuracy * accuracy) : 0);
+}
 
 /// Returns, of a curve's faces, the share that it has not been in before: where it runs along itself windows are few.
 double share_of_new_faces(const SurfaceCurve& curve) {

@@ -146,6 +146,8 @@ void WavefrontDistances::begin(const WatchedPlaces* places) {
   due_.clear();
   settled_.clear();
   for (const Index vertex : reached_) distances_[vertex] = k_infinity;
+  for (const Index vertex : with_longest_) longest_[vertex] = 0;
+  with_longest_.clear();
   reached_.clear();
   barriers_.clear();
   limits_ = {};
@@ -196,16 +198,20 @@ void WavefrontDistances::push(const RayWindow& window) {
   if (!is_too_far(window, key)) queue_.push(window, key);
 }
 
-bool WavefrontDistances::is_too_far(const RayWindow& window, double key) const {
+bool WavefrontDistances::is_too_far(const RayWindow& window, double key) {
   if (key > limits_.radius) return true;
   if (!std::isfinite(limits_.edges)) return false;
-  const Index h = window.halfedge;
-  const double edge = std::max({mesh_.length(h), mesh_.length(Mesh::next(h)), mesh_.length(Mesh::prev(h))});
-  return key > limits_.edges * edge;
+  const Index h = window.halfedge, apex = mesh_.from(Mesh::prev(h));
+  const double longest = std::max({mesh_.length(h), mesh_.length(Mesh::next(h)), mesh_.length(Mesh::prev(h)),
+                                   std::min(longest_[mesh_.from(h)], longest_[mesh_.to(h)])});
+  if (longest_[apex] == 0) with_longest_.push_back(apex);
+  if (longest_[apex] == 0 || longest < longest_[apex]) longest_[apex] = longest;
+  return key > limits_.edges * longest;
 }
 
 void WavefrontDistances::run(const RayLimits& limits, const JobStage& stage, const ReportRays& report) {
   limits_ = limits;
+  if (std::isfinite(limits.edges)) longest_.resize(mesh_.vertex_count(), 0);
   is_cut_ = !places_.empty() && !barriers_.empty();
   do {
     while (queue_.advance() && queue_.reached() <= limits_.radius) {
@@ -316,13 +322,19 @@ void WavefrontDistances::emit_from(Index vertex, double begin, double end) {
   } while (h != k_none && h != first);
 }
 
-/// Tells whether the rays have gone all round a tip that they end at: see tips.h.
+/// Tells whether the rays have gone all round a tip that they end at: see tips.h. Those of a curve that is at the tip
+/// itself have only begun.
 template <class Front>
 bool WavefrontDistances::circles_tip(const RayWindow& w) const {
   const double length = mesh_.length(w.halfedge);
+  const auto comes_from_afar = [&](double b) {
+    return !Front::is_parallel || Front::distance(w, b) > k_at_border * length;
+  };
   const Vec2 to_end = Front::ray(w, Vec2(length, 0)), to_start = Front::ray(w, Vec2(0, 0));
-  return (w.b1 == length && circles(tip_tangents_[mesh_.to(w.halfedge)], to_end.x(), to_end.y())) ||
-         (w.b0 == 0 && circles(tip_tangents_[mesh_.from(w.halfedge)], -to_start.x(), to_start.y()));
+  return (w.b1 == length && circles(tip_tangents_[mesh_.to(w.halfedge)], to_end.x(), to_end.y()) &&
+          comes_from_afar(length)) ||
+         (w.b0 == 0 && circles(tip_tangents_[mesh_.from(w.halfedge)], -to_start.x(), to_start.y()) &&
+          comes_from_afar(0));
 }
 
 /// Barriers take rays that meet them in the face out of a window; places before them see those rays all the same.

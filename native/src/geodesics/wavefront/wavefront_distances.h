@@ -25,8 +25,8 @@ struct RayLabel {
 
 struct RayLimits {
   double radius = std::numeric_limits<double>::infinity();
-  /// Rays stop so many edges away from where they set out, measured in edges of the face that they enter: near enough
-  /// for what looks at a front from vertices behind it. Labels beyond are of longer ways.
+  /// Rays stop so many edges away from where they set out, measured in the longest edge on their way: near enough for
+  /// what looks at a front from vertices behind it. Labels beyond are of longer ways.
   double edges = std::numeric_limits<double>::infinity();
 };
 
@@ -107,7 +107,7 @@ class WavefrontDistances {
   RayWindow seen_from_side(const RayWindow& parent, RayWindow child, const Side& side) const;
   template <class Front>
   void reach_places(const RayWindow& window);
-  bool is_too_far(const RayWindow& window, double key) const;
+  bool is_too_far(const RayWindow& window, double key);
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
@@ -121,6 +121,8 @@ class WavefrontDistances {
   std::vector<Index> reached_, settled_;
   PlaceDistances places_;
   RayLimits limits_;
+  std::vector<double> longest_;  ///< by vertex, with a limit in edges: the longest one on the way to it; 0: not known
+  std::vector<Index> with_longest_;
   bool is_cut_ = false;  ///< there are places, and barriers
   std::uint32_t epoch_ = 0;
 };
