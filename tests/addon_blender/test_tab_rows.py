@@ -60,8 +60,8 @@ class Layout:
     column = box = split = grid_flow = row
 
 
-def drawn_by(panel):
-    """Settings that a panel draws, its header's switch among them."""
+def drawn_by(panel, is_opened=False):
+    """Settings that a panel draws, its header's switch among them, as it is at first or opened by hand."""
     drawn = []
     layout = Layout(drawn)
     pretended = SimpleNamespace(layout=layout, split_layout=lambda _: layout, switch=getattr(panel, "switch", ""))
@@ -75,7 +75,7 @@ def drawn_by(panel):
     if hasattr(panel, "draw_header"):
         panel.draw_header(pretended, context)
     is_closed = "DEFAULT_CLOSED" in getattr(panel, "bl_options", set()) and hasattr(panel, "bl_parent_id")
-    if not is_closed or panel.bl_parent_id == "SADDLEBACK_PT_main":
+    if is_opened or not is_closed or panel.bl_parent_id == "SADDLEBACK_PT_main":
         panel.draw(pretended, context)
     return drawn
 
@@ -88,7 +88,7 @@ def test_at_most_ten_settings_are_shown_before_advanced(name, painted):
         getattr(item.saddleback, name).density_source = "VERTEX_GROUP"
     top = next(panel for panel in panels.CLASSES if panel.__name__ == f"SADDLEBACK_PT_{name}")
     family = [top, *(panel for panel in panels.CLASSES if getattr(panel, "bl_parent_id", "") == top.__name__)]
-    shown = [setting for panel in family for setting in drawn_by(panel)]
+    shown = [setting for panel in family for setting in drawn_by(panel, panel is top)]
     assert len(shown) == len(set(shown)) and shown
     most = MOST_SETTINGS + 2 * (painted and name == "tessellate")  # the group's name and how much smaller
     assert len(shown) <= most, shown

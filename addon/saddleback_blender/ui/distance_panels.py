@@ -122,6 +122,7 @@ class SADDLEBACK_PT_ribbon(SaddlebackSubPanel, bpy.types.Panel):
     """Bands along curves."""
 
     bl_label = "Ribbon"
+    bl_parent_id = "SADDLEBACK_PT_path"  # one more heading would make the tab higher than a screen
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
