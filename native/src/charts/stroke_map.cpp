@@ -37,7 +37,7 @@ constexpr double k_at_end = 1e-9;
 /// Positive weights of edges with which each inner vertex's distance is the weighted mean of its neighbors'.
 class Weights {
  public:
-  Weights(const Sheet& sheet, const PartedSheet& parted, const SweptSide& swept)
+  Weights(const Sheet& sheet, const PartedSheet& parted, const SweptSide& swept, const JobStage& stage)
       : swept_(swept), number_(parted.nodes.size(), k_none) {
     for (const Index v : swept.vertices) number(v);
     std::vector<Triangle> triangles;
@@ -49,6 +49,7 @@ class Weights {
     rows_.resize(vertices_.size());
     for (const Index v : vertices_) distances_.push_back(sheet.distance[parted.nodes[v]]);
     for (Index e = 0; e < edges.edge_count(); ++e) {
+      stage.check();
       double weight = 0;
       for (const Index h : edges.edge(e)) {
         const auto at = [&](Index i) -> const Vec3& { return sheet.positions[parted.nodes[vertices_[i]]]; };
@@ -110,7 +111,7 @@ class Weights {
 void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide& swept, std::vector<double>& along,
                  double at_start, double at_end, const JobStage& stage) {
   if (swept.vertices.empty()) return;
-  const Weights weights(sheet, parted, swept);
+  const Weights weights(sheet, parted, swept, stage);
   const std::vector<Index>& vertices = weights.vertices();
   std::vector<Index> row(vertices.size(), k_none), unknowns;
   std::vector<Vec3> places;
@@ -129,6 +130,7 @@ void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide&
   std::vector<Vec2> right;
   matrix.offsets.push_back(0);
   for (const Index i : unknowns) {
+    stage.check();
     double sum = 0;
     Vec2 given(0, 0);
     for (const auto& [number, weight] : weights.row(i)) {
@@ -145,6 +147,7 @@ void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide&
     right.push_back(given);
   }
   std::vector<Index> order = charts::dissection_order(matrix, places);
+  stage.check();
   const charts::SparseCholesky factors(matrix, std::move(order), stage);
   const std::vector<Vec2> solution = factors.solve(right);
   for (std::size_t i = 0; i < unknowns.size(); ++i) along[vertices[unknowns[i]]] = solution[i].x();
@@ -271,26 +274,29 @@ StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius,
   Sheet sheet = charts::cut_sheet(near.mesh, line, radius, size, stage.part(0.1, 0.3));
   const double length = curve.length();
   measure(sheet, curve.closed(), length, reach, stage.part(0.3, 0.7));
-  cut_at_cut_locus(sheet, near.mesh, curve.closed(), length);
-  cut_at_radius(sheet, near.mesh, radius);
+  cut_at_cut_locus(sheet, near.mesh, curve.closed(), length, stage);
+  cut_at_radius(sheet, near.mesh, radius, stage);
   stage.update(0.75);
   double farthest = 0;
   for (const Triangle& t : sheet.triangles)
     for (const Index node : t) farthest = std::max(farthest, sheet.distance[node]);
-  const PartedSheet parted(sheet);
+  const PartedSheet parted(sheet, stage);
   StrokeMap map;
   map.length = length;
   Patch patch(map, sheet, parted, near);
   std::vector<std::uint8_t> taken(sheet.triangles.size(), 0);
   for (const bool is_left : {false, true}) {
     const charts::SideBorder border = border_of(sheet, parted, is_left);
-    SweptSide swept = sweep_side(sheet, parted, border, farthest, taken);
+    SweptSide swept = sweep_side(sheet, parted, border, farthest, taken, stage);
     std::vector<double> along = along_curve(sheet, parted, border, length, is_left);
     solve_along(sheet, parted, swept, along, is_left ? 0 : length, is_left ? length : 0,
                 stage.part(is_left ? 0.88 : 0.76, is_left ? 0.99 : 0.87));
     patch.begin_side();
     std::ranges::sort(swept.triangles);
-    for (const Index t : swept.triangles) patch.add(t, along, is_left ? 1 : -1);
+    for (const Index t : swept.triangles) {
+      stage.check();
+      patch.add(t, along, is_left ? 1 : -1);
+    }
   }
   double all = 0;
   for (const Triangle& t : sheet.triangles)

@@ -68,12 +68,13 @@ class Divider {
  public:
   Divider(Sheet& sheet, const Mesh& near, bool with_walls) : sheet_(sheet), near_(near), with_walls_(with_walls) {}
 
-  void divide(const Where& where) {
+  void divide(const JobStage& stage, const Where& where) {
     std::vector<Triangle> old;
     std::vector<Index> faces;
     old.swap(sheet_.triangles);
     faces.swap(sheet_.faces);
     for (std::size_t t = 0; t < old.size(); ++t) {
+      stage.check();
       std::array<Index, 3> middles;
       for (int i = 0; i < 3; ++i) middles[i] = node_between(old[t][i], old[t][(i + 1) % 3], faces[t], where);
       divide(old[t], middles, faces[t]);
@@ -317,7 +318,7 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   // An edge between two points of the curve would have no width in the map.
   std::vector<std::uint8_t> on_curve(sheet.points.size(), 0);
   for (const Index node : sheet.curve) on_curve[node] = 1;
-  Divider(sheet, near, false).divide([&](Index a, Index b) {
+  Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
     return on_curve[a] && on_curve[b] && !sheet.walls.contains(Sheet::key(a, b)) ? 0.5 : 0;
   });
   const Beads beads(curve, radius);
@@ -333,7 +334,9 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
         if ((at[t[i]] - at[t[(i + 1) % 3]]).norm() > size) too_long.insert(Sheet::key(t[i], t[(i + 1) % 3]));
     }
     if (too_long.empty()) break;
-    Divider(sheet, near, false).divide([&](Index a, Index b) { return too_long.contains(Sheet::key(a, b)) ? 0.5 : 0; });
+    Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
+      return too_long.contains(Sheet::key(a, b)) ? 0.5 : 0;
+    });
   }
   return sheet;
 }
@@ -385,8 +388,8 @@ void measure(Sheet& sheet, bool closed, double length, double reach, const JobSt
   }
 }
 
-void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length) {
-  Divider(sheet, near, true).divide([&](Index a, Index b) -> double {
+void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length, const JobStage& stage) {
+  Divider(sheet, near, true).divide(stage, [&](Index a, Index b) -> double {
     if (sheet.distance[a] == 0 || sheet.distance[b] == 0) return 0;
     if (!std::isfinite(sheet.distance[a]) || !std::isfinite(sheet.distance[b])) return 0;
     const double size = (sheet.positions[a] - sheet.positions[b]).norm();
@@ -399,10 +402,10 @@ void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length
   });
 }
 
-void cut_at_radius(Sheet& sheet, const Mesh& near, double radius) {
+void cut_at_radius(Sheet& sheet, const Mesh& near, double radius, const JobStage& stage) {
   for (double& distance : sheet.distance)
     if (std::abs(distance - radius) <= k_at_radius * radius) distance = radius;
-  Divider(sheet, near, false).divide([&](Index a, Index b) -> double {
+  Divider(sheet, near, false).divide(stage, [&](Index a, Index b) -> double {
     const double from = sheet.distance[a], to = sheet.distance[b];
     if (!std::isfinite(from + to) || (from - radius) * (to - radius) >= 0) return 0;
     return (radius - from) / (to - from);

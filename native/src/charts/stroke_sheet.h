@@ -46,9 +46,9 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
 void measure(Sheet& sheet, bool closed, double length, double reach, const JobStage& stage);
 
 /// Cuts along the cut locus: between nodes whose nearest points lie far apart on the curve, or on its two sides.
-void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length);
+void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length, const JobStage& stage);
 
 /// Cuts at the radius and drops what is beyond.
-void cut_at_radius(Sheet& sheet, const Mesh& near, double radius);
+void cut_at_radius(Sheet& sheet, const Mesh& near, double radius, const JobStage& stage);
 
 }  // namespace saddleback::charts

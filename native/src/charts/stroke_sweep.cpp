@@ -42,10 +42,11 @@ class Sweep {
     }
   }
 
-  SweptSide run() {
+  SweptSide run(const JobStage& stage) {
     for (std::size_t v = 0; v < parted_.nodes.size(); ++v)
       if (swept_.is_last[v]) wait_about(static_cast<Index>(v));
     while (!waiting_.empty()) {
+      stage.check();
       const Index v = waiting_.top().second;
       waiting_.pop();
       is_waiting_[v] = 0;
@@ -191,12 +192,13 @@ class Sweep {
 
 }  // namespace
 
-PartedSheet::PartedSheet(const Sheet& sheet) {
+PartedSheet::PartedSheet(const Sheet& sheet, const JobStage& stage) {
   const auto count = static_cast<Index>(3 * sheet.triangles.size());
   twins.assign(count, k_none);
   DisjointSets corners(count);
   const EdgeTable edges = build_edge_table(sheet.triangles, static_cast<Index>(sheet.points.size()));
   for (Index e = 0; e < edges.edge_count(); ++e) {
+    stage.check();
     const auto around = edges.edge(e);
     if (around.size() != 2) continue;
     const Index h = around[0], t = around[1];
@@ -208,6 +210,7 @@ PartedSheet::PartedSheet(const Sheet& sheet) {
   }
   vertices.resize(count);
   for (Index h = 0; h < count; ++h) {
+    stage.check();
     const Index root = corners.root(h), node = halfedge_from(sheet.triangles, h);
     if (root == h) {
       vertices[h] = static_cast<Index>(nodes.size());
@@ -218,6 +221,7 @@ PartedSheet::PartedSheet(const Sheet& sheet) {
     by_nodes_.emplace_back(directed(node, halfedge_to(sheet.triangles, h)), h);
   }
   std::ranges::sort(by_nodes_);
+  stage.check();
   begins.assign(nodes.size() + 1, 0);
   for (const Index v : vertices) ++begins[v + 1];
   for (std::size_t v = 0; v < nodes.size(); ++v) begins[v + 1] += begins[v];
@@ -233,8 +237,8 @@ Index PartedSheet::halfedge(Index from_node, Index to_node) const {
 }
 
 SweptSide sweep_side(Sheet& sheet, const PartedSheet& parted, const SideBorder& border, double radius,
-                     std::vector<std::uint8_t>& taken) {
-  return Sweep(sheet, parted, border, radius, taken).run();
+                     std::vector<std::uint8_t>& taken, const JobStage& stage) {
+  return Sweep(sheet, parted, border, radius, taken).run(stage);
 }
 
 }  // namespace saddleback::charts

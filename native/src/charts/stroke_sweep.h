@@ -10,7 +10,7 @@ namespace saddleback::charts {
 
 /// Triangles of a sheet as they hang together, where walls part them: on both sides of those vertices are others.
 struct PartedSheet {
-  explicit PartedSheet(const Sheet& sheet);
+  PartedSheet(const Sheet& sheet, const JobStage& stage);
 
   static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static Index prev(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
@@ -47,7 +47,8 @@ struct SweptSide {
 /// Takes vertices in the order of their distance, with the triangles between them and what has been taken. Where a
 /// vertex meets the chain in two places (the fronts about an obstacle) it is joined to one of them. Marks what it takes
 /// in `taken`, and lifts vertices that are level with what they cover, by less than 1e-4 of the radius. O(n log n).
+/// \throw Cancelled
 SweptSide sweep_side(Sheet& sheet, const PartedSheet& parted, const SideBorder& border, double radius,
-                     std::vector<std::uint8_t>& taken);
+                     std::vector<std::uint8_t>& taken, const JobStage& stage);
 
 }  // namespace saddleback::charts
