@@ -17,8 +17,8 @@ namespace {
 // seen from the vertex in it whose ray passes nearest, by a detour the smaller the more vertices there are: twice the
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
-// That vertex is within half an edge of the way, which is longer by it by up to an eighth of an edge over the width: of
-// the accuracy this is the share that a strip of some width takes.
+// That vertex is within half an edge of the way, which is longer by it by an eighth of an edge over the width at most,
+// relatively by an eighth over the width's square: the share of the accuracy that a strip may take.
 constexpr double k_share_of_accuracy = 0.25;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
 constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;

@@ -200,13 +200,17 @@ void WavefrontDistances::push(const RayWindow& window) {
 
 bool WavefrontDistances::is_too_far(const RayWindow& window, double key) {
   if (key > limits_.radius) return true;
-  if (!std::isfinite(limits_.edges)) return false;
-  const Index h = window.halfedge, apex = mesh_.from(Mesh::prev(h));
+  return std::isfinite(limits_.edges) && key > limits_.edges * longest_to_apex(window.halfedge);
+}
+
+/// The longest edge on the way through a half-edge to the vertex opposite, for which it is kept.
+double WavefrontDistances::longest_to_apex(Index h) {
   const double longest = std::max({mesh_.length(h), mesh_.length(Mesh::next(h)), mesh_.length(Mesh::prev(h)),
                                    std::min(longest_[mesh_.from(h)], longest_[mesh_.to(h)])});
-  if (longest_[apex] == 0) with_longest_.push_back(apex);
-  if (longest_[apex] == 0 || longest < longest_[apex]) longest_[apex] = longest;
-  return key > limits_.edges * longest;
+  double& kept = longest_[mesh_.apex(h)];
+  if (kept == 0) with_longest_.push_back(mesh_.apex(h));
+  if (kept == 0 || longest < kept) kept = longest;
+  return longest;
 }
 
 void WavefrontDistances::run(const RayLimits& limits, const JobStage& stage, const ReportRays& report) {

@@ -108,6 +108,7 @@ class WavefrontDistances {
   template <class Front>
   void reach_places(const RayWindow& window);
   bool is_too_far(const RayWindow& window, double key);
+  double longest_to_apex(Index halfedge);
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
