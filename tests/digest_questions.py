@@ -531,6 +531,13 @@ def weighted_diagram(disks: tuple[NDArray[np.float64], NDArray[np.float64]], way
     return [*all_of(made, DIAGRAM), *made.cells, made.locate(disks[0][::3] * 1.01, threads=way.threads)]
 
 
+@asked({name: disks for name, disks in WEIGHTED.items() if not name.startswith("huge")}, portable=True)
+def power_diagram(disks: tuple[NDArray[np.float64], NDArray[np.float64]], way: Way) -> Iterable[object]:
+    made = sb.power_diagram_2d(disks[0], disks[1] * np.abs(disks[1]), threads=way.threads)
+    clipped = made.clip(disks[0].min(axis=0) + float(np.ptp(disks[0], axis=0).max()) * SQUARE, threads=way.threads)
+    return [*all_of(made, DIAGRAM), *made.cells, made.locate(disks[0][::3] * 1.01), *all_of(clipped, CLIPPED)]
+
+
 @asked({name: disks for name, disks in WEIGHTED.items() if not name.startswith("huge")})
 def weighted_curves(disks: tuple[NDArray[np.float64], NDArray[np.float64]], way: Way) -> Iterable[object]:
     made = sb.voronoi_2d(*disks, threads=way.threads, device=way.device)

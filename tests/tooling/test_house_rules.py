@@ -142,7 +142,7 @@ ROOMS = ROOT / "native/src"
 SUBFOLDERS = {
     "support": ["threads", "memory", "cuda", "simd"],
     "mesh": ["tables", "cutting", "read", "repair", "soup"],
-    "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "cuda"],
+    "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "power", "cuda"],
     "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],
     "tessellation": ["bisectors", "log_map", "cells", "relaxation", "baking"],
     "field": ["linear", "connection", "smoothing"],

@@ -167,10 +167,10 @@ inline auto fields_of(CentroidalVoronoi& of) {
 }
 /// All but the device's times, which do not belong to the result.
 inline auto fields_of(Voronoi2d& of) {
-  auto& [sites, weights, site_of, hidden, vertices, edges, edge_sites, device_times, cell_sites, cell_places,
+  auto& [sites, weights, powers, site_of, hidden, vertices, edges, edge_sites, device_times, cell_sites, cell_places,
          cell_offsets, corner_vertices, side_edges] = of;
   static_cast<void>(device_times);
-  return std::tie(sites, weights, site_of, hidden, vertices, edges, edge_sites, cell_sites, cell_places, cell_offsets,
+  return std::tie(sites, weights, powers, site_of, hidden, vertices, edges, edge_sites, cell_sites, cell_places, cell_offsets,
                   corner_vertices, side_edges);
 }
 // NOLINTEND(readability-identifier-naming)

@@ -1,5 +1,6 @@
 // Voronoi diagrams of the plane.
 
+#include "saddleback/voronoi2d/power_diagram_2d.h"
 #include "saddleback/voronoi2d/voronoi_2d.h"
 
 #include "convert/devices.h"
@@ -60,6 +61,20 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   });
   if (!within) return {std::move(diagram), py::none()};
   ClippedCells clipped = without_gil([&] { return diagram.clip(*within, options.threads, token); });
+  return {std::move(diagram), py::cast(std::move(clipped))};
+}
+
+Diagram find_powers(const py::object& sites, const py::object& weights, const py::object& domain,
+                    const py::object& threads, const py::object& job) {
+  const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  const ArrayIn<double> given = as_reals(weights, "weights", static_cast<Index>(points.size()));
+  std::optional<PlanarDomain> within;
+  if (!domain.is_none()) within = as_domain(domain, "domain");
+  const int count = as_integer(threads, "threads");
+  const JobIn token(job);
+  Voronoi2d diagram = without_gil([&] { return power_diagram_2d(points, given.values, count, token); });
+  if (!within) return {std::move(diagram), py::none()};
+  ClippedCells clipped = without_gil([&] { return diagram.clip(*within, count, token); });
   return {std::move(diagram), py::cast(std::move(clipped))};
 }
 
@@ -138,6 +153,44 @@ Notes
 O(n log n) time (with weights: expected, for evenly spread sites), O(n) memory. H. Tong: the sweep circle that needs
 no transformation.)";
 
+constexpr const char* k_power_doc =
+    R"(Power diagram of points of the plane (Laguerre's): weights move the borders between cells, which stay straight.
+
+A point x belongs to the site with the least power |x - site|^2 - weight. With the weight r^2 a site is a circle of radius
+r, and where two circles cross, the border runs through both crossings. A site may lie outside of its cell. Which cells
+there are, which touch, and where more than three meet in one vertex, is exact; only coordinates are rounded.
+
+Parameters
+----------
+sites : (n, 2) float array
+    Any finite numbers in any order. Of sites at one place the heaviest has a cell; equal ones share it.
+weights : (n,) float array
+    Squares of lengths; negative ones too, since only differences matter.
+domain : (m, 2) float array or list of such, optional
+    A simple polygon, or an outline and its holes: `clipped` then holds the cells within.
+threads : int
+    Of all but the triangulation, which takes one. 0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+Voronoi2d
+    Its `powers` are the weights, its `delaunay` the regular triangulation, and `hidden` the sites without a cell, or with
+    one without an area.
+
+Raises
+------
+InputError
+    A coordinate or weight that is not finite, a wrong number of weights, coordinates or weights so different in size that
+    exact arithmetic cannot take them, a domain that is not a simple polygon with holes.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(n log n) expected, O(n) memory. F. Aurenhammer: Power diagrams, 1987. H. Edelsbrunner, N. Shah: Incremental topological
+flipping works for regular triangulations, 1996.)";
+
 constexpr const char* k_clip_doc = R"(The cells within a simple polygon with holes: ClippedCells.
 
 Parameters
@@ -195,6 +248,9 @@ O(k).)";
 
 constexpr const char* k_locate_doc = R"(Nearest site of each point, exactly; of equally near ones the smallest index.
 
+With weights the one with the smallest distance less its weight; of a power diagram the one with the least power. Hidden
+sites, whose cells have no area, are not found.
+
 Parameters
 ----------
 points : (m, 2) float array
@@ -242,11 +298,12 @@ void bind_voronoi_2d(py::module_& m) {
       .def_property_readonly("sites", &rows<&Voronoi2d::sites, double>, "(n, 2) float64: as given.")
       .def_property_readonly("weights", &array<&Voronoi2d::weights>,
                              "(n,) float64: as given, or (0,) if they are equal.")
+      .def_property_readonly("powers", &array<&Voronoi2d::powers>,
+                             "(n,) float64: the weights of a power diagram as given, or (0,) of others.")
       .def_property_readonly("site_of", &array<&Voronoi2d::site_of>,
                              "(n,) int32: smallest index of an equal site; only such sites have a cell.")
-      .def_property_readonly(
-          "hidden", &array<&Voronoi2d::hidden>,
-          "(h,) int32, ascending: sites without a cell, since their disk lies in that of a heavier one.")
+      .def_property_readonly("hidden", &array<&Voronoi2d::hidden>,
+                             "(h,) int32, ascending: sites without a cell, since heavier ones leave them none.")
       .def_property_readonly("vertices", &rows<&Voronoi2d::vertices, double>, "(V, 2) float64.")
       .def_property_readonly("edges", &rows<&Voronoi2d::edges, Index>,
                              "(E, 2) int32 vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line.")
@@ -336,6 +393,8 @@ void bind_voronoi_2d(py::module_& m) {
   m.def("voronoi_2d", &find_diagram, py::arg("sites"), py::arg("weights") = py::none(), py::arg("domain") = py::none(),
         py::arg("circles") = 0, py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(),
         py::kw_only(), py::arg("pinned") = false, k_doc);
+  m.def("power_diagram_2d", &find_powers, py::arg("sites"), py::arg("weights"), py::arg("domain") = py::none(),
+        py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_power_doc);
   let_travel<Diagram>(m, "Voronoi2d", &save_diagram, &load_diagram, 1);
 }
 

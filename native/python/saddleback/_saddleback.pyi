@@ -2740,11 +2740,14 @@ class Voronoi2d:
     def weights(self) -> _Floats:
         """(n,) float64: as given, or (0,) if they are equal."""
     @property
+    def powers(self) -> _Floats:
+        """(n,) float64: the weights of a power diagram as given, or (0,) of others."""
+    @property
     def site_of(self) -> _Indices:
         """(n,) int32: smallest index of an equal site; only such sites have a cell."""
     @property
     def hidden(self) -> _Indices:
-        """(h,) int32, ascending: sites without a cell, since their disk lies in that of a heavier one."""
+        """(h,) int32, ascending: sites without a cell, since heavier ones leave them none."""
     @property
     def vertices(self) -> _Floats:
         """(V, 2) float64."""
@@ -2846,6 +2849,9 @@ class Voronoi2d:
     def locate(self, points: ArrayLike, *, threads: SupportsIndex = 0, job: Job | None = None) -> _Indices:
         """Nearest site of each point, exactly; of equally near ones the smallest index.
 
+        With weights the one with the smallest distance less its weight; of a power diagram the one with the least power. Hidden
+        sites, whose cells have no area, are not found.
+
         Parameters
         ----------
         points : (m, 2) float array
@@ -2929,6 +2935,52 @@ def voronoi_2d(
     -----
     O(n log n) time (with weights: expected, for evenly spread sites), O(n) memory. H. Tong: the sweep circle that needs
     no transformation.
+    """
+
+def power_diagram_2d(
+    sites: ArrayLike,
+    weights: ArrayLike,
+    domain: _Domain | None = None,
+    *,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> Voronoi2d:
+    """Power diagram of points of the plane (Laguerre's): weights move the borders between cells, which stay straight.
+
+    A point x belongs to the site with the least power |x - site|^2 - weight. With the weight r^2 a site is a circle of radius
+    r, and where two circles cross, the border runs through both crossings. A site may lie outside of its cell. Which cells
+    there are, which touch, and where more than three meet in one vertex, is exact; only coordinates are rounded.
+
+    Parameters
+    ----------
+    sites : (n, 2) float array
+        Any finite numbers in any order. Of sites at one place the heaviest has a cell; equal ones share it.
+    weights : (n,) float array
+        Squares of lengths; negative ones too, since only differences matter.
+    domain : (m, 2) float array or list of such, optional
+        A simple polygon, or an outline and its holes: `clipped` then holds the cells within.
+    threads : int
+        Of all but the triangulation, which takes one. 0: all cores. The result does not depend on it.
+    job : Job, optional
+
+    Returns
+    -------
+    Voronoi2d
+        Its `powers` are the weights, its `delaunay` the regular triangulation, and `hidden` the sites without a cell, or with
+        one without an area.
+
+    Raises
+    ------
+    InputError
+        A coordinate or weight that is not finite, a wrong number of weights, coordinates or weights so different in size that
+        exact arithmetic cannot take them, a domain that is not a simple polygon with holes.
+    Cancelled
+        The job was cancelled.
+
+    Notes
+    -----
+    O(n log n) expected, O(n) memory. F. Aurenhammer: Power diagrams, 1987. H. Edelsbrunner, N. Shah: Incremental topological
+    flipping works for regular triangulations, 1996.
     """
 
 @final

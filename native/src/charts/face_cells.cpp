@@ -22,8 +22,11 @@ constexpr double k_same_place = 0x1p-51;
 struct Bisector {
   Vec2 middle, across;
   double size;
-  Bisector(const Vec2& mine, const Vec2& other)
-      : middle(0.5 * mine + 0.5 * other), across(mine - other), size(mine.cwiseAbs().sum() + other.cwiseAbs().sum()) {}
+  Bisector(const Voronoi2d& diagram, Index mine, Index other)
+      : middle(voronoi2d::middle_between(diagram, mine, other)),
+        across(diagram.sites[mine] - diagram.sites[other]),
+        size(diagram.sites[mine].cwiseAbs().sum() + diagram.sites[other].cwiseAbs().sum() +
+             (diagram.powers.empty() ? 0 : middle.cwiseAbs().sum())) {}
   double value(const Vec2& p) const {
     const double value = (p - middle).dot(across);
     const double rounding = k_same_place * (size + p.cwiseAbs().sum()) * across.cwiseAbs().maxCoeff();
@@ -69,7 +72,7 @@ class CellClip {
   };
 
   void cut(Index k) {
-    const Bisector by(sides_.mine(), sides_.neighbor(k));
+    const Bisector by(diagram_, sides_.site(), sides_.other(k));
     values_.clear();
     for (std::size_t i = 0; i < loop_.size(); ++i)
       values_.push_back(value(loop_[i == 0 ? loop_.size() - 1 : i - 1].line, loop_[i], k, by));
@@ -111,7 +114,7 @@ class CellClip {
     const auto [left, right] = diagram_.edge_sites[edge];
     Vec2 a = chart_.corners()[h], b = chart_.corners()[Mesh::next(h)];
     if (b.x() < a.x() || (b.x() == a.x() && b.y() < a.y())) std::swap(a, b);  // the same from both sides of the edge
-    const Bisector by(diagram_.sites[left], diagram_.sites[right]);
+    const Bisector by(diagram_, left, right);
     const double at_a = by.value(a), at_b = by.value(b);
     const double share = std::clamp(at_a / (at_a - at_b), 0.0, 1.0);
     const Vec2 place = a + share * (b - a);
@@ -137,7 +140,7 @@ class CellClip {
 bool holds(const Voronoi2d& diagram, Index site, const Vec2* corner) {
   for (const Index edge : diagram.cell_edges(site)) {
     const auto [left, right] = diagram.edge_sites[edge];
-    const Bisector side(diagram.sites[site], diagram.sites[left == site ? right : left]);
+    const Bisector side(diagram, site, left == site ? right : left);
     for (int i = 0; i < 3; ++i)
       if (side.value(corner[i]) < 0) return false;
   }

@@ -21,13 +21,14 @@ using namespace voronoi2d;
 
 namespace {
 
-/// The side of a cell: points at least as near to `mine` as to `other`. The values for the cells on both sides are each
-/// other's negatives, to the last bit, so that neighbors are cut at the same points.
+/// The side of a cell: points at least as near to `mine` as to `other`, through a point of the line between them. The
+/// values for the cells on both sides are each other's negatives, to the last bit, so that neighbors are cut at the
+/// same points.
 struct Side {
   Vec2 middle, along, across;
   double distance = 0;  ///< that points must keep from the side, in the unit of `value`
-  Side(const Vec2& mine, const Vec2& other)
-      : middle(0.5 * mine + 0.5 * other), along(mine.y() - other.y(), other.x() - mine.x()), across(mine - other) {}
+  Side(const Vec2& mine, const Vec2& other, const Vec2& through)
+      : middle(through), along(mine.y() - other.y(), other.x() - mine.x()), across(mine - other) {}
   double value(const Vec2& p) const { return (p - middle).dot(across) - distance; }
 };
 
@@ -64,7 +65,7 @@ class CellClip {
 
  private:
   Side side(Index k) const {
-    Side result(sides_.mine(), sides_.neighbor(k));
+    Side result(sides_.mine(), sides_.neighbor(k), sides_.middle(k));
     result.distance = 0.5 * gap_ * result.across.norm();
     return result;
   }

@@ -1,5 +1,6 @@
-// Walks from cell to cell towards the point: a site that is not the nearest has a neighbor that is nearer, with weights
-// or without. Each point starts at a site next to it on a space-filling curve through sites and points alike.
+// Walks from cell to cell towards the point: a site that is not the nearest has a neighbor that is nearer, with
+// weights, with powers or without. Each point starts at a site next to it on a space-filling curve through sites and
+// points alike.
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include "saddleback/error.h"
 #include "saddleback/voronoi2d/voronoi_2d.h"
 
+#include "predicates/power_2d.h"
 #include "predicates/predicates.h"
 #include "predicates/weighted_2d.h"
 #include "support/threads/parallel.h"
@@ -27,8 +29,13 @@ struct Scaled {
     return {diagram.sites[i].x() * scale, diagram.sites[i].y() * scale, diagram.weights[i] * scale};
   }
 
+  predicates::PowerPoint2 powered(Index i) const {
+    return {diagram.sites[i].x() * scale, diagram.sites[i].y() * scale, diagram.powers[i] * scale * scale};
+  }
+
   /// Returns exactly whether a (negative) or b (positive) is nearer.
   predicates::Sign compare(const predicates::Point2& point, Index a, Index b) const {
+    if (!diagram.powers.empty()) return predicates::compare_powers(point, powered(a), powered(b));
     if (diagram.weights.empty()) return predicates::compare_distances(point, site(a), site(b));
     return predicates::compare_weighted_distances(point, weighted(a), weighted(b));
   }

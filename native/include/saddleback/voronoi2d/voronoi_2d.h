@@ -52,8 +52,9 @@ struct ClipOptions {
 struct Voronoi2d {
   LargeArray<Vec2> sites;                       ///< (n) as given
   LargeArray<double> weights;                   ///< (n) as given, none if they are equal
+  LargeArray<double> powers;                    ///< (n) weights of a power diagram as given, none of others
   LargeArray<Index> site_of;                    ///< (n) smallest index of an equal site: only such have a cell
-  std::vector<Index> hidden;                    ///< ascending: sites that a heavier one leaves no cell
+  std::vector<Index> hidden;                    ///< ascending: sites that heavier ones leave no cell
   LargeArray<Vec2> vertices;                    ///< (V)
   LargeArray<std::array<Index, 2>> edges;       ///< (E) vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line
   LargeArray<std::array<Index, 2>> edge_sites;  ///< (E) the sites left and right of the edge, first to second vertex
@@ -95,7 +96,8 @@ struct Voronoi2d {
   /// Does the same as a part of other work. \throw InputError for lengths that are negative or not finite, and for a
   /// gap between curved edges.
   ClippedCells clip(const PlanarDomain& domain, const ClipOptions& options, const JobStage& stage) const;
-  /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
+  /// (m) nearest site of each point (of a power diagram the one with the least power there), exactly; of equally near
+  /// ones the smallest index. Hidden sites are nowhere nearest. O(m + n) expected.
   /// \throw InputError for a point that is not finite, and without sites. Cancelled
   std::vector<Index> locate(std::span<const Vec2> points, int threads = 0, Job* job = nullptr) const;
   /// Sites of the cells that meet at a vertex, counter-clockwise, from the left of an edge that ends there.

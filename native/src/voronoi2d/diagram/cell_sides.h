@@ -6,6 +6,8 @@
 #include "saddleback/voronoi2d/voronoi_2d.h"
 
 #include "voronoi2d/diagram/circumcenter.h"
+#include "voronoi2d/diagram/edge_curve.h"
+#include "voronoi2d/diagram/power_center.h"
 
 namespace saddleback::voronoi2d {
 
@@ -20,11 +22,16 @@ class CellSides {
   Index edge(Index k) const { return edges_[k]; }
   Index after(Index k) const { return k + 1 == count() ? 0 : k + 1; }
   Index before(Index k) const { return k == 0 ? count() - 1 : k - 1; }
-  const Vec2& mine() const { return diagram_.sites[site_]; }
-  const Vec2& neighbor(Index k) const {
+  Index site() const { return site_; }
+  /// Returns the site beyond a side.
+  Index other(Index k) const {
     const auto [left, right] = diagram_.edge_sites[edges_[k]];
-    return diagram_.sites[left == site_ ? right : left];
+    return left == site_ ? right : left;
   }
+  const Vec2& mine() const { return diagram_.sites[site_]; }
+  const Vec2& neighbor(Index k) const { return diagram_.sites[other(k)]; }
+  /// Returns where the line of a side crosses the line through its sites.
+  Vec2 middle(Index k) const { return middle_between(diagram_, site_, other(k)); }
 
   /// Returns the vertex of the diagram, where one side goes on to the other; k_none for sides that are not next to each
   /// other.
@@ -46,9 +53,7 @@ class CellSides {
   /// Returns where the lines of two sides meet, both moved inwards by a distance.
   Vec2 meeting(Index j, Index k, double distance = 0) const {
     const Index vertex = vertex_between(j, k);
-    const auto point = [](const Vec2& site) { return predicates::Point2{site.x(), site.y()}; };
-    Vec2 place = vertex != k_none ? diagram_.vertices[vertex]
-                                  : circumcenter(point(mine()), point(neighbor(j)), point(neighbor(k)));
+    Vec2 place = vertex != k_none ? diagram_.vertices[vertex] : center(site_, other(j), other(k));
     if (distance == 0) return place;
     const Vec2 a = (mine() - neighbor(j)).normalized(), b = (mine() - neighbor(k)).normalized();
     return place + distance / (1 + a.dot(b)) * (a + b);
@@ -62,6 +67,17 @@ class CellSides {
   }
 
  private:
+  Vec2 center(Index a, Index b, Index c) const {
+    const auto point = [&](Index site) {
+      return predicates::Point2{diagram_.sites[site].x(), diagram_.sites[site].y()};
+    };
+    if (diagram_.powers.empty()) return circumcenter(point(a), point(b), point(c));
+    const auto powered = [&](Index site) {
+      return predicates::PowerPoint2{diagram_.sites[site].x(), diagram_.sites[site].y(), diagram_.powers[site]};
+    };
+    return power_center(powered(a), powered(b), powered(c));
+  }
+
   const Voronoi2d& diagram_;
   Index site_;
   std::span<const Index> edges_, vertices_;

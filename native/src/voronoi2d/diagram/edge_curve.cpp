@@ -1,5 +1,6 @@
 #include "voronoi2d/diagram/edge_curve.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "saddleback/error.h"
@@ -22,6 +23,15 @@ Vec2 direction_between(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
+Vec2 middle_between(const Voronoi2d& diagram, Index a, Index b) {
+  const Vec2 &at_a = diagram.sites[a], &at_b = diagram.sites[b];
+  Vec2 middle = 0.5 * at_a + 0.5 * at_b;
+  if (diagram.powers.empty()) return middle;
+  const Vec2 way = at_b - at_a;
+  const double length = way.stableNorm();
+  return middle + 0.5 * ((diagram.powers[a] - diagram.powers[b]) / length) * (way / length);
+}
+
 Bisector edge_bisector(const Voronoi2d& diagram, Index edge) {
   const auto [left, right] = diagram.edge_sites[edge];
   return {weighted_site(diagram, left), weighted_site(diagram, right)};
@@ -33,7 +43,23 @@ Bisector bisector_beside(const Voronoi2d& diagram, Index site, Index edge) {
   return {weighted_site(diagram, site), weighted_site(diagram, other), diagram.sites[site]};
 }
 
+namespace {
+
+void add_power_edge(const Voronoi2d& diagram, Index edge, double extent, std::vector<Vec2>& points) {
+  const auto [left, right] = diagram.edge_sites[edge];
+  const Vec2 middle = middle_between(diagram, left, right),
+             across = direction_between(diagram.sites[left], diagram.sites[right]), along(-across.y(), across.x());
+  const auto [first, second] = diagram.edges[edge];
+  const auto place = [&](Index vertex) { return (diagram.vertices[vertex] - middle).dot(along); };
+  const double from = first == k_none ? 0 : place(first);
+  points.push_back(first == k_none ? Vec2(middle - extent * along) : diagram.vertices[first]);
+  points.push_back(second == k_none ? Vec2(middle + (std::max(from, 0.0) + extent) * along) : diagram.vertices[second]);
+}
+
+}  // namespace
+
 void add_edge_points(const Voronoi2d& diagram, Index edge, double tolerance, double extent, std::vector<Vec2>& points) {
+  if (!diagram.powers.empty()) return add_power_edge(diagram, edge, extent, points);
   const Bisector curve = edge_bisector(diagram, edge);
   const auto [first, second] = diagram.edges[edge];
   const double from =

@@ -7,6 +7,10 @@
 
 namespace saddleback::voronoi2d {
 
+/// The point between two sites of a diagram without curved edges where their bisector crosses the line through them;
+/// of sites in either order the same, to the last bit.
+Vec2 middle_between(const Voronoi2d& diagram, Index a, Index b);
+
 /// The curve of an edge, from its first to its second vertex.
 Bisector edge_bisector(const Voronoi2d& diagram, Index edge);
 

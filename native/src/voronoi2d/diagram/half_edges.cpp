@@ -16,6 +16,7 @@
 #include "support/threads/parallel.h"
 #include "voronoi2d/diagram/cell_block.h"
 #include "voronoi2d/diagram/circumcenter.h"
+#include "voronoi2d/diagram/power_center.h"
 #include "voronoi2d/sweep/planar_mesh.h"
 
 namespace saddleback::voronoi2d {
@@ -284,7 +285,7 @@ class Numberer {
         place(vertex++, cells.sites[i], scratch.around[size / 3], scratch.around[2 * size / 3]);
       }
     });
-    if (!has_large) return place_row(first, scratch);
+    if (!has_large && sites_.weights.empty()) return place_row(first, scratch);
     CellBlock::for_sides(0, scratch.own_corner_count, stage_, [&](Index k) {
       const Index i = scratch.own_corners[k], half = cells.halves[i];
       if (!is_large(half)) place(mesh_.corners[half | 3], cells.sites[i], cells.neighbors[i], cells.next_neighbors[i]);
@@ -410,7 +411,12 @@ class Numberer {
   predicates::Point2 point(Index rank) const { return {sites_.x[rank], sites_.y[rank]}; }
 
   void place(Index vertex, Index a, Index b, Index c) {
-    result_.vertices[vertex] = circumcenter(point(a), point(b), point(c)) * unscale_;
+    const auto weighted = [&](Index site) {
+      return predicates::PowerPoint2{sites_.x[site], sites_.y[site], sites_.weights[site]};
+    };
+    result_.vertices[vertex] = (sites_.weights.empty() ? circumcenter(point(a), point(b), point(c))
+                                                       : power_center(weighted(a), weighted(b), weighted(c))) *
+                               unscale_;
   }
 
   /// The edges of a piece's cells, from these alone. The cell that gave an edge its number, the first on it, is to its

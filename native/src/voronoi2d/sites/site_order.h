@@ -17,6 +17,7 @@ struct OrderedSites {
   LargeArray<double> x, y;           ///< by rank, times `scale`
   LargeArray<Index> original;        ///< by rank: the index given by the caller, the smallest of equal sites
   LargeArray<Index> rank_of;         ///< by index: the rank of the site or of its equal
+  LargeArray<double> weights;        ///< by rank, times the square of `scale`; none: all alike
   LargeArray<std::uint32_t> places;  ///< by rank: two bits for each halving of the squares, never falling
   double scale = 1;                  ///< a power of two
 

@@ -8,20 +8,13 @@
 
 #include "support/threads/parallel.h"
 #include "voronoi2d/sites/site_order.h"
+#include "voronoi2d/sites/site_weights.h"
 
 namespace saddleback::voronoi2d {
 
 using predicates::WeightedPoint2;
 
 namespace {
-
-void check_weights(std::span<const Vec2> sites, std::span<const double> weights) {
-  if (weights.size() != sites.size())
-    throw InputError(message("weights: wanted one for each of ", sites.size(), " sites, got ", weights.size()));
-  for (std::size_t i = 0; i < weights.size(); ++i)
-    if (!std::isfinite(weights[i]))
-      throw InputError(message("weights: weight ", i, " is ", weights[i], ", wanted a finite number"));
-}
 
 void check_scaled(std::span<const double> weights, double scale) {
   constexpr double k_largest = 0x1p500;  // squares stay among the doubles
@@ -31,47 +24,6 @@ void check_scaled(std::span<const double> weights, double scale) {
       throw InputError(message("weights: weight ", i, " is ", weights[i],
                                ", too different in size from the sites' coordinates to be told exactly"));
   }
-}
-
-/// Finds at each place the heaviest site, of equal ones the smallest index. `ordered` knows the places.
-struct Heaviest {
-  LargeArray<Index> original;   ///< by rank of the place
-  std::vector<bool> is_hidden;  ///< by index
-};
-
-Heaviest heaviest_by_place(const OrderedSites& ordered, std::span<const double> weights) {
-  const Index count = static_cast<Index>(weights.size());
-  Heaviest result{ordered.original, std::vector<bool>(count, false)};
-  for (Index i = 0; i < count; ++i) {
-    Index& best = result.original[ordered.rank_of[i]];
-    if (weights[i] > weights[best]) best = i;
-  }
-  for (Index i = 0; i < count; ++i) result.is_hidden[i] = weights[i] < weights[result.original[ordered.rank_of[i]]];
-  return result;
-}
-
-// Of sites at one place with one weight the smallest index stands for all.
-LargeArray<Index> smallest_equal(const OrderedSites& ordered, std::span<const double> weights) {
-  const Index count = static_cast<Index>(weights.size());
-  LargeArray<Index> site_of(count);
-  std::vector<Index> shared;  // sites that are not alone at their place
-  std::vector<bool> is_shared(ordered.count(), false);
-  for (Index i = 0; i < count; ++i)
-    if (ordered.site_of(i) != i) is_shared[ordered.rank_of[i]] = true;
-  for (Index i = 0; i < count; ++i) {
-    site_of[i] = i;
-    if (is_shared[ordered.rank_of[i]]) shared.push_back(i);
-  }
-  const auto same = [&](Index a, Index b) {
-    return ordered.rank_of[a] == ordered.rank_of[b] && weights[a] == weights[b];
-  };
-  std::sort(shared.begin(), shared.end(), [&](Index a, Index b) {
-    if (ordered.rank_of[a] != ordered.rank_of[b]) return ordered.rank_of[a] < ordered.rank_of[b];
-    return weights[a] != weights[b] ? weights[a] < weights[b] : a < b;
-  });
-  for (std::size_t k = 1; k < shared.size(); ++k)
-    if (same(shared[k - 1], shared[k])) site_of[shared[k]] = site_of[shared[k - 1]];
-  return site_of;
 }
 
 /// Finds hidden sites, a block of sites in a row after the other. At one place there is one site.

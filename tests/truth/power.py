@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""Truths about power diagrams by rational numbers: every vertex from all triples of sites, cells by half planes."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+
+import saddleback as sb
+from tests.truth import plane
+from tests.truth.plane import Floats, Point, Random, cross, exact, rounded, squared
+from tests.truth.registry import guards
+
+
+def random_powers(sites: Floats, rng: Random) -> tuple[Floats, list[Fraction]]:
+    """Weights with ties, hidden sites, cells of no area, and none of all that: rounded ones, squares, all alike."""
+    spacing = float(np.ptp(sites, axis=0).max()) / np.sqrt(len(sites)) or float(np.abs(sites).max()) or 1.0
+    kind = rng.integers(5)
+    if kind == 0:
+        powers = spacing**2 * rng.normal(size=len(sites)) * 10 ** rng.uniform(-3, 1)
+    elif kind == 1:  # few values: ties wherever the sites have some
+        powers = 2.0 ** np.round(np.log2(spacing**2)) * rng.integers(-2, 3, len(sites)) / 2
+    elif kind == 2:  # on one plane or paraboloid, as far as doubles can say so: cells that shrink to points
+        powers = (sites**2).sum(axis=1) + rng.integers(0, 2, len(sites)) * spacing**2
+    elif kind == 3:  # one site hides most others
+        powers = np.where(np.arange(len(sites)) == rng.integers(len(sites)), 4 * spacing**2 * len(sites), 0.0)
+    else:
+        powers = np.full(len(sites), float(rng.normal()))
+    return powers, [Fraction(power) for power in powers.tolist()]
+
+
+def power(at: Point, site: Point, weight: Fraction) -> Fraction:
+    return squared(at, site) - weight
+
+
+def center_of_powers(sites: list[Point], weights: list[Fraction], triple: tuple[int, int, int]) -> Point | None:
+    """Where three powers are equal, by Cramer's rule; None on a line."""
+    a, b, c = (sites[i] for i in triple)
+    twice = 2 * cross(a, b, c)
+    if twice == 0:
+        return None
+    wa, wb, wc = (weights[i] for i in triple)
+    u, v = squared(a, b) + wa - wb, squared(a, c) + wa - wc
+    return (
+        a[0] + (u * (c[1] - a[1]) - v * (b[1] - a[1])) / twice,
+        a[1] + (v * (b[0] - a[0]) - u * (c[0] - a[0])) / twice,
+    )
+
+
+def power_vertices(sites: list[Point], weights: list[Fraction]) -> dict[Point, frozenset[int]]:
+    """Each vertex and all sites (the first of equal ones) with the least power there. O(n^4)."""
+    own = [i for i in range(len(sites)) if (sites[i], weights[i]) not in zip(sites[:i], weights[:i], strict=True)]
+    found: dict[Point, frozenset[int]] = {}
+    for triple in combinations(own, 3):
+        place = center_of_powers(sites, weights, triple)
+        if place is None or place in found:
+            continue
+        powers = {i: power(place, sites[i], weights[i]) for i in own}
+        least = min(powers.values())
+        if powers[triple[0]] == least:
+            found[place] = frozenset(i for i in own if powers[i] == least)
+    return found
+
+
+def half_by_power(loop: list[Point], mine: tuple[Point, Fraction], other: tuple[Point, Fraction]) -> list[Point]:
+    """What of a polygon has no more power of one site than of another (Sutherland and Hodgman)."""
+    gains = [power(p, *other) - power(p, *mine) for p in loop]
+    kept = []
+    for i, (p, q) in enumerate(zip(loop, loop[1:] + loop[:1], strict=True)):
+        at_p, at_q = gains[i], gains[(i + 1) % len(loop)]
+        if at_p >= 0:
+            kept.append(p)
+        if (at_p > 0 > at_q) or (at_p < 0 < at_q):
+            share = at_p / (at_p - at_q)
+            kept.append((p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1])))
+    return kept
+
+
+def cells_by_power(sites: list[Point], weights: list[Fraction], loop: list[Point]) -> list[list[Point]]:
+    """The part of a convex polygon in each site's cell: of equal sites only the first one has it."""
+    both = list(zip(sites, weights, strict=True))
+    cells = []
+    for i, mine in enumerate(both):
+        cell = [] if mine in both[:i] else loop
+        for other in set(both) - {mine}:
+            cell = half_by_power(cell, mine, other) if cell else cell
+        cells.append(cell)
+    return cells
+
+
+def wide_box(sites: Floats, powers: Floats, vertices: dict[Point, frozenset[int]]) -> list[Point]:
+    """A square that holds all vertices, all sites, and a part of every cell that has an area."""
+    places = [*exact(sites), *vertices]
+    reach = max(max(abs(p[0]), abs(p[1])) for p in places)
+    distinct = np.unique(sites, axis=0)
+    gaps = [float(np.hypot(*(p - q))) for p, q in combinations(distinct, 2)]
+    middle = Fraction(float(np.ptp(powers)) / min(gaps)) if gaps else Fraction(0)
+    far = 4 * (reach + middle + 1)
+    return [(-far, -far), (far, -far), (far, far), (-far, far)]
+
+
+@guards("power_diagram_2d", on="plane")
+def vertices_by_power(sites: Floats, rng: Random) -> None:
+    """Which cells there are, which meet in which vertices, and where, against all triples of sites, in fractions."""
+    sites = plane.some_of(sites, rng, 11)
+    powers, weights = random_powers(sites, rng)
+    diagram, points = sb.power_diagram_2d(sites, powers, threads=1), exact(sites)
+    truth = power_vertices(points, weights)
+    box = wide_box(sites, powers, truth)
+    areas = [plane.signed_area(cell) if len(cell) > 2 else Fraction(0) for cell in cells_by_power(points, weights, box)]
+    visible = {i for i, area in enumerate(areas) if area > 0}
+    first = {both: i for i, both in reversed(list(enumerate(zip(points, weights, strict=True))))}
+    assert diagram.site_of.tolist() == [first[both] for both in zip(points, weights, strict=True)]
+    assert diagram.hidden.tolist() == [i for i in range(len(sites)) if diagram.site_of[i] not in visible]
+    about = plane.sites_about_vertices(diagram)
+    right = {frozenset(meeting & visible): place for place, meeting in truth.items()}
+    right = {meeting: place for meeting, place in right.items() if len(meeting) > 2}
+    assert sorted(map(sorted, about)) == sorted(map(sorted, right))
+    largest = np.abs(sites).max()
+    for meeting, place in zip(about, diagram.vertices, strict=True):
+        wanted = rounded([right[meeting]])[0]
+        off = np.abs(place - wanted).max() / max(largest, np.abs(wanted).max(), 1e-300)
+        assert off <= plane.VERTEX_ROUNDINGS, f"{place} for {wanted}"
+
+
+@guards("power_diagram_2d", on="plane")
+def cells_of_powers(sites: Floats, rng: Random) -> None:
+    """Areas within a square, their sum, and the least power of points everywhere, in fractions."""
+    sites = plane.some_of(sites, rng, 10)
+    powers, weights = random_powers(sites, rng)
+    corner, side = plane.box_about(sites, rng)
+    loop = corner + side * np.array(plane.SQUARE)
+    diagram, points = sb.power_diagram_2d(sites, powers, loop, threads=1), exact(sites)
+    clipped = diagram.clipped
+    assert clipped is not None
+    areas = [
+        float(plane.signed_area(cell)) if len(cell) > 2 else 0.0
+        for cell in cells_by_power(points, weights, exact(loop))
+    ]
+    # A border's place is rounded by what it is computed from: the sites' coordinates and how far their weights move it.
+    apart = [float(np.hypot(*(p - q))) for p, q in combinations(np.unique(sites, axis=0), 2)]
+    moved = float(np.ptp(powers)) / min(apart) if apart else 0.0
+    size = max(np.abs(loop).max(), np.abs(sites).max(), min(moved, 1e3 * side))
+    assert np.abs(clipped.areas - areas).max() <= 8 * plane.ROUNDINGS * size * side * len(sites)
+    places = np.vstack([corner + side * rng.random((5, 2)), sites[:3], diagram.vertices[:3]])
+    shown = [i for i in range(len(sites)) if i not in set(diagram.hidden.tolist())]
+    for place, found in zip(exact(places), diagram.locate(places, threads=1), strict=True):
+        assert found == min(shown, key=lambda i: (power(place, points[i], weights[i]), i))
