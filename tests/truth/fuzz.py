@@ -19,12 +19,14 @@ import threading
 import time
 import traceback
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 try:
     import resource
@@ -36,7 +38,7 @@ if __name__ == "__main__":  # as a file, too: the project's root holds the packa
 
 import saddleback as sb
 from tests import meshes
-from tests.truth import families, shrinking
+from tests.truth import families
 from tests.truth.registry import Check, load_checks
 
 MOST_MEMORY = 4 << 30
@@ -145,6 +147,27 @@ class Worker:
         self._process.join()
 
 
+def fewest_rows(count: int, fails: Callable[[NDArray[np.int64]], bool], tries: int = 400) -> NDArray[np.int64]:
+    """Fewer and fewer of `count` rows, as long as the rest still fails: delta debugging.
+
+    After [zeller2002].
+    """
+    rows, block = np.arange(count), max(count // 2, 1)
+    while tries > 0:
+        start, shrunk = 0, False
+        while start < len(rows) and tries > 0:
+            rest = np.delete(rows, slice(start, start + block))
+            tries -= 1
+            if len(rest) and fails(rest):
+                rows, shrunk = rest, True
+            else:
+                start += block
+        if block == 1 and not shrunk:
+            break
+        block = block if shrunk and block < len(rows) else max(block // 2, 1)
+    return rows
+
+
 def with_rows(case: Case, rows: Any) -> Case:
     """The case with some of its triangles or sites only."""
     if len(case.arrays) == 2:
@@ -157,7 +180,7 @@ def made_small(worker: Worker, case: Case) -> Case:
     """The smallest input found that still is a finding. A hang is left as it is: each try would take its time."""
     if not case.arrays:
         return case
-    rows = shrinking.fewest_rows(len(case.arrays[-1]), lambda rows: worker.run(with_rows(case, rows)).word == "finding")
+    rows = fewest_rows(len(case.arrays[-1]), lambda rows: worker.run(with_rows(case, rows)).word == "finding")
     return with_rows(case, rows)
 
 

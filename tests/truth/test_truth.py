@@ -9,7 +9,7 @@ import os
 import numpy as np
 import pytest
 
-from tests.truth import families, fuzz, shrinking, table
+from tests.truth import families, fuzz, table
 from tests.truth.registry import Check, load_checks
 
 SECONDS = 60.0
@@ -91,7 +91,7 @@ def test_families_make_triangles(family):
 
 def test_few_rows_remain_of_what_fails():
     wanted = {3, 77}
-    rows = shrinking.fewest_rows(100, lambda rows: wanted <= set(rows.tolist()))
+    rows = fuzz.fewest_rows(100, lambda rows: wanted <= set(rows.tolist()))
     assert set(rows.tolist()) == wanted
 
 

@@ -167,7 +167,7 @@ class Inserter {
   }
 
   /// The triangle about a site, or one beyond an edge of the hull that it is beyond. Such a walk ends, since these are
-  /// the shadows of a convex surface [edelsbrunner1990a].
+  /// the shadows of a convex surface [edelsbrunner1989].
   Index triangle_about(Index site, const JobStage& stage) const {
     Index at = last_;
     for (Index came = k_none, step = 0;; ++step) {
