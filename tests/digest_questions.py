@@ -568,6 +568,16 @@ def relaxed_2d(sites: NDArray[np.float64], way: Way) -> Iterable[object]:
     return answer
 
 
+@asked({"uniform-60": PLANE["uniform-60"], "uniform-5000": PLANE["uniform-5000"]}, portable=True)
+def balanced_2d(sites: NDArray[np.float64], way: Way) -> Iterable[object]:
+    density = np.random.default_rng(1).random((8, 8))
+    answer: list[object] = []
+    for given in (None, density):
+        done = sb.balance_2d(sites, HOLED, given, max_iterations=3, threads=way.threads)
+        answer += all_of(done, "sites weights shares energy iterations converged")
+    return answer
+
+
 @asked(USUAL)
 def sweep_circle(sites: NDArray[np.float64]) -> Iterable[object]:
     size = float(np.ptp(sites, axis=0).max())

@@ -148,3 +148,52 @@ def cells_of_powers(sites: Floats, rng: Random) -> None:
     shown = [i for i in range(len(sites)) if i not in set(diagram.hidden.tolist())]
     for place, found in zip(exact(places), diagram.locate(places, threads=1), strict=True):
         assert found == min(shown, key=lambda i: (power(place, points[i], weights[i]), i))
+
+
+def masses_of(sites: Floats, weights: Floats, low: Floats, side: float, density: Floats) -> Floats:
+    """Mass of each cell: density, constant in rectangles over a square, times areas in fractions."""
+    points, powers = exact(sites), [Fraction(weight) for weight in weights.tolist()]
+    rows, columns = density.shape
+    masses = np.zeros(len(sites))
+    x = low[0] + side * np.arange(columns + 1) / columns
+    y = low[1] + side * np.arange(rows + 1) / rows
+    for row in range(rows):
+        for column in range(columns):
+            loop = [(x[column], y[row]), (x[column + 1], y[row]), (x[column + 1], y[row + 1]), (x[column], y[row + 1])]
+            cells = cells_by_power(points, powers, exact(np.array(loop)))
+            areas = [float(plane.signed_area(cell)) if len(cell) > 2 else 0.0 for cell in cells]
+            masses += density[row, column] * np.array(areas)
+    return masses
+
+
+@guards("balance_2d", "Balance2d", on="plane")
+def masses_of_cells(sites: Floats, rng: Random) -> None:
+    """Capacities of cells against areas in fractions; sites that may move rest at their cells' centers of mass."""
+    low, side = plane.box_about(sites, rng)
+    count = int(rng.integers(1, 9))
+    inside = low + side * rng.random((count, 2))
+    density = rng.random((int(rng.integers(1, 4)), int(rng.integers(1, 4)))) + 0.05
+    capacities = rng.random(count) + 0.1
+    capacities /= capacities.sum()
+    may_move = rng.random() < 0.5
+    loop = low + side * np.array(plane.SQUARE)
+    # Borders of cells are rounded as far as the box is from the origin, in its sides.
+    rounding = 256 * plane.ROUNDINGS * (np.abs(loop).max() / side + 1) / capacities.min()
+    if rounding > 1e-2:
+        return  # a box of a few roundings
+    tolerance = max(1e-9, rounding)
+    done = sb.balance_2d(
+        inside, loop, density, capacities, 200 if may_move else 0, 1e-12, capacity_tolerance=tolerance, threads=1
+    )
+    assert done.capacity_error <= tolerance, done.stop_reason
+    assert (np.diff(done.energy) <= 0).all()
+    if not may_move:
+        assert (done.sites == inside).all()
+    masses = masses_of(done.sites, done.weights, low, side, density)
+    assert np.abs(masses / masses.sum() / capacities - 1).max() <= tolerance + rounding
+    assert np.abs(done.shares / capacities - 1).max() <= tolerance + rounding
+    if may_move and done.stop_reason == "tolerance":
+        clipped = sb.power_diagram_2d(done.sites, done.weights, loop).clipped
+        assert clipped is not None
+        if density.size == 1:
+            assert np.abs(clipped.centroids - done.sites).max() <= (1e-4 + rounding) * side

@@ -1,11 +1,61 @@
 // Relaxation of sites in the plane.
 
+#include "saddleback/voronoi2d/balance_2d.h"
 #include "saddleback/voronoi2d/relax_2d.h"
 
 #include "convert/planar.h"
 
 namespace saddleback::bindings {
 namespace {
+
+constexpr const char* k_balance_doc =
+    R"(Moves sites to the centers of their cells within a domain, all of which have the same mass: the evenest stippling.
+
+Cells are those of a power diagram, whose weights are found with the sites: each cell has just its capacity, an equal
+share of the density's mass or one of its own. Where sites must stay, the weights alone are found, those of
+semi-discrete optimal transport.
+
+Parameters
+----------
+sites : (n, 2) float array
+    One whose cell has no mass (outside, where the density is 0, equal to another) is put into a heavy cell first.
+domain : (m, 2) float array or list of such
+    A simple polygon, or an outline and its holes.
+density : (rows, columns) float array or callable, optional
+    Mass per area, in proportion, as `relax_2d` takes it: what dots at the sites have as their tone. None: uniform.
+capacities : (n,) float array, optional
+    Shares of the whole mass, which sum to 1. None: all alike.
+max_iterations : int
+    Steps of the sites, in each of which the capacities are met. 0: the sites stay.
+tolerance : float
+    Stop when the energy falls by less than this share of itself.
+capacity_tolerance : float
+    How far the mass of a cell may be from its capacity, in shares of that.
+samples : int
+    Of a callable, each way.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+Balance2d
+    `power_diagram_2d(result.sites, result.weights, domain)` has the cells.
+
+Raises
+------
+InputError
+    No sites, a coordinate that is not finite, a density that is negative, not finite or 0 all over the domain, capacities
+    that are not positive or do not sum to 1, options out of range; with `max_iterations` 0 a site whose cell has no mass.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(n^1.5 + rectangles that borders of cells cross) a step of Newton's method, of which the first weights take some 4 to 10
+and each iteration 2. The energy, the integral of density times squared distance, never rises. F. de Goes, K. Breeden, V.
+Ostromoukhov, M. Desbrun: Blue noise through optimal transport, 2012. J. Kitagawa, Q. Merigot, B. Thibert: Convergence of
+a Newton algorithm for semi-discrete optimal transport, 2019.)";
 
 constexpr const char* k_doc =
     R"(Moves sites to the centers of their cells within a domain until they rest: even cells, stippling.
@@ -101,6 +151,30 @@ Relaxation2d relax(const py::object& sites, const py::object& domain, const py::
   return without_gil([&] { return relax_2d(points, within, options, token); });
 }
 
+Balance2d balance(const py::object& sites, const py::object& domain, const py::object& density,
+                  const py::object& capacities, const py::object& max_iterations, const py::object& tolerance,
+                  const py::object& capacity_tolerance, const py::object& samples, const py::object& threads,
+                  const py::object& job) {
+  const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  const PlanarDomain within = as_domain(domain, "domain");
+  const DensityIn raster = as_density(density, within, as_integer(samples, "samples"));
+  ArrayIn<double> shares;
+  if (!capacities.is_none()) shares = as_reals(capacities, "capacities", static_cast<Index>(points.size()));
+  const Balance2dOptions options{.density = raster.raster,
+                                 .capacities = shares.values,
+                                 .max_iterations = as_integer(max_iterations, "max_iterations"),
+                                 .tolerance = as_real(tolerance, "tolerance"),
+                                 .capacity_tolerance = as_real(capacity_tolerance, "capacity_tolerance"),
+                                 .threads = as_integer(threads, "threads")};
+  const JobIn token(job);
+  return without_gil([&] { return balance_2d(points, within, options, token); });
+}
+
+template <auto Member>
+py::array balance_array(const py::object& self) {
+  return view_of(std::span(py::cast<const Balance2d&>(self).*Member), self);
+}
+
 }  // namespace
 
 void bind_relax_2d(py::module_& m) {
@@ -121,6 +195,32 @@ void bind_relax_2d(py::module_& m) {
       .def("__repr__", [](const Relaxation2d& r) {
         return message("<saddleback.Relaxation2d of ", r.sites.size(), " sites after ", r.iterations, " iterations>");
       });
+  py::class_<Balance2d>(m, "Balance2d", py::module_local(), "Sites and weights of even cells; made by `balance_2d`.")
+      .def_property_readonly(
+          "sites",
+          [](const py::object& self) {
+            return view_of_rows<double>(std::span(py::cast<const Balance2d&>(self).sites), self);
+          },
+          "(n, 2) float64.")
+      .def_property_readonly("weights", &balance_array<&Balance2d::weights>,
+                             "(n,) float64: of the power diagram; their mean is 0.")
+      .def_property_readonly("shares", &balance_array<&Balance2d::shares>,
+                             "(n,) float64: of the whole mass in each cell.")
+      .def_property_readonly(
+          "energy", &balance_array<&Balance2d::energy>,
+          "(iterations + 1,) float64: with the capacities met, of the start and after each iteration; "
+          "never rises.")
+      .def_readonly("capacity_error", &Balance2d::capacity_error, "The largest of a cell's, in shares of its capacity.")
+      .def_readonly("iterations", &Balance2d::iterations, "Steps of the sites.")
+      .def_readonly("converged", &Balance2d::converged, "True if the sites rest and the capacities are met.")
+      .def_readonly("stop_reason", &Balance2d::stop_reason, "The reason why it ended.")
+      .def("__repr__", [](const Balance2d& r) {
+        return message("<saddleback.Balance2d of ", r.sites.size(), " sites after ", r.iterations, " iterations>");
+      });
+  m.def("balance_2d", &balance, py::arg("sites"), py::arg("domain"), py::arg("density") = py::none(),
+        py::arg("capacities") = py::none(), py::arg("max_iterations") = 50, py::arg("tolerance") = 1e-4, py::kw_only(),
+        py::arg("capacity_tolerance") = 1e-5, py::arg("samples") = 512, py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_balance_doc);
   m.def("relax_2d", &relax, py::arg("sites"), py::arg("domain"), py::arg("density") = py::none(),
         py::arg("max_iterations") = 100, py::arg("tolerance") = 1e-6, py::kw_only(), py::arg("samples") = 512,
         py::arg("threads") = 0, py::arg("job") = py::none(), k_doc);

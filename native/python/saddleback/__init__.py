@@ -8,6 +8,7 @@ from saddleback import _content, _conversions, _notebook  # noqa: F401  (they gi
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     BakedCells,
+    Balance2d,
     BarredMesh,
     BentCopies,
     Cancelled,
@@ -69,6 +70,7 @@ from saddleback._saddleback import (
     add_barriers,
     arcs_across,
     bake_cells,
+    balance_2d,
     bezier_curve,
     border_edges,
     cell_boundary,
@@ -125,6 +127,7 @@ from saddleback.viewers import plot, show
 
 __all__ = [
     "BakedCells",
+    "Balance2d",
     "BarredMesh",
     "BentCopies",
     "Cancelled",
@@ -188,6 +191,7 @@ __all__ = [
     "add_barriers",
     "arcs_across",
     "bake_cells",
+    "balance_2d",
     "bezier_curve",
     "blend_by_distance",
     "border_edges",

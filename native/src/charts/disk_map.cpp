@@ -6,9 +6,9 @@
 
 #include "saddleback/error.h"
 
-#include "charts/sparse_cholesky.h"
 #include "charts/turn.h"
 #include "mesh/tables/outgoing.h"
+#include "support/sparse_cholesky.h"
 
 namespace saddleback {
 namespace {
@@ -52,7 +52,7 @@ void place_border(const Mesh& mesh, std::vector<Vec2>& places) {
 /// side.
 struct Equations {
   std::vector<Index> vertices;  ///< the inner ones
-  charts::SymmetricMatrix matrix;
+  SymmetricMatrix matrix;
   std::vector<Vec2> right;
 };
 
@@ -92,9 +92,9 @@ void place_inner_vertices(const Mesh& mesh, std::vector<Vec2>& places, const Job
   std::vector<Vec3> where;
   for (const Index v : equations.vertices) where.push_back(mesh.position(v));
   stage.update(0.02);
-  std::vector<Index> order = charts::dissection_order(equations.matrix, where);
+  std::vector<Index> order = dissection_order(equations.matrix, where);
   stage.update(0.05);
-  const charts::SparseCholesky factors(equations.matrix, std::move(order), stage.part(0.05, 0.97));
+  const SparseCholesky factors(equations.matrix, std::move(order), stage.part(0.05, 0.97));
   const std::vector<Vec2> solution = factors.solve(equations.right);
   for (std::size_t i = 0; i < solution.size(); ++i) places[equations.vertices[i]] = solution[i];
 }

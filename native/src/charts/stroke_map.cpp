@@ -11,11 +11,11 @@
 
 #include "saddleback/error.h"
 
-#include "charts/sparse_cholesky.h"
 #include "charts/stroke_sheet.h"
 #include "charts/stroke_sweep.h"
 #include "charts/turn.h"
 #include "mesh/tables/edge_table.h"
+#include "support/sparse_cholesky.h"
 
 namespace saddleback {
 namespace {
@@ -126,7 +126,7 @@ void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide&
     }
   }
   if (unknowns.empty()) return;
-  charts::SymmetricMatrix matrix;
+  SymmetricMatrix matrix;
   std::vector<Vec2> right;
   matrix.offsets.push_back(0);
   for (const Index i : unknowns) {
@@ -146,9 +146,9 @@ void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide&
     matrix.diagonal.push_back(sum);
     right.push_back(given);
   }
-  std::vector<Index> order = charts::dissection_order(matrix, places);
+  std::vector<Index> order = dissection_order(matrix, places);
   stage.check();
-  const charts::SparseCholesky factors(matrix, std::move(order), stage);
+  const SparseCholesky factors(matrix, std::move(order), stage);
   const std::vector<Vec2> solution = factors.solve(right);
   for (std::size_t i = 0; i < unknowns.size(); ++i) along[vertices[unknowns[i]]] = solution[i].x();
 }

@@ -6,28 +6,15 @@
 #include "saddleback/error.h"
 #include "saddleback/voronoi2d/voronoi_2d.h"
 
-#include "support/threads/parallel.h"
 #include "voronoi2d/clipping/raster_moments.h"
 
 namespace saddleback {
 namespace {
 
+using voronoi2d::check_density;
+using voronoi2d::moments_of;
 using voronoi2d::RasterIntegral;
 using voronoi2d::RasterMoments;
-
-void check_density(const DensityRaster& density) {
-  if (density.values.empty()) return;
-  const auto& values = density.values;
-  if (density.rows < 1 || density.columns < 1 ||
-      values.size() != static_cast<std::size_t>(density.rows) * density.columns)
-    throw InputError(message("density: wanted ", density.rows, " rows of ", density.columns, " values, got ",
-                             values.size(), " values"));
-  const auto bad = std::find_if(values.begin(), values.end(), [](double d) { return !(d >= 0) || std::isinf(d); });
-  if (bad == values.end()) return;
-  const auto place = bad - values.begin();
-  throw InputError(message("density: wanted finite values of 0 or more, got ", *bad, " in row ",
-                           place / density.columns, ", column ", place % density.columns));
-}
 
 void check_options(std::span<const Vec2> sites, const Relaxation2dOptions& options) {
   if (sites.empty()) throw InputError("sites: wanted at least one site, got none");
@@ -48,16 +35,8 @@ State evaluate(std::vector<Vec2> sites, const PlanarDomain& domain, const Raster
                const JobStage& stage) {
   const Voronoi2d diagram = voronoi_2d(sites, {.threads = threads}, stage.part(0, 0.5));
   const ClippedCells cells = diagram.clip(domain, {.threads = threads}, stage.part(0.5, 0.8));
-  const auto count = static_cast<Index>(cells.loop_sites.size());
-  std::vector<RasterMoments> of_loops(count);
-  parallel_for(count, threads, 64, [&](Index loop, int) {
-    stage.check();
-    const Index begin = cells.loop_offsets[loop], end = cells.loop_offsets[loop + 1];
-    of_loops[loop] = integral.along(std::span(cells.points).subspan(begin, end - begin));
-  });
   State state{std::move(sites), {}, 0};
-  state.moments.resize(state.sites.size());
-  for (Index loop = 0; loop < count; ++loop) state.moments[cells.loop_sites[loop]] += of_loops[loop];
+  state.moments = moments_of(cells, static_cast<Index>(state.sites.size()), integral, threads, stage);
   for (std::size_t i = 0; i < state.sites.size(); ++i) {
     const Vec2 site = state.sites[i] - integral.middle();
     const RasterMoments& cell = state.moments[i];
@@ -82,7 +61,7 @@ Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, c
                       Job* job) {
   check_options(sites, options);
   const JobStage stage(job, "Finding cells");
-  const RasterIntegral integral(domain, options.density);
+  const RasterIntegral integral(domain, options.density, 2);
   RasterMoments whole;
   for (const std::vector<Vec2>& loop : domain.loops()) whole += integral.along(loop);
   // Sums from the raster's left side on leave a cell without density with a mass of rounding; it must not move a site.

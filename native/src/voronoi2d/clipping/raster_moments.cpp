@@ -4,9 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "saddleback/error.h"
+
+#include "support/threads/parallel.h"
+
 namespace saddleback::voronoi2d {
 
-RasterIntegral::RasterIntegral(const PlanarDomain& domain, const DensityRaster& density)
+RasterIntegral::RasterIntegral(const PlanarDomain& domain, const DensityRaster& density, int power)
     : rows_(density.values.empty() ? 1 : density.rows), columns_(density.values.empty() ? 1 : density.columns) {
   const std::vector<Vec2>& outline = domain.loops()[0];
   Vec2 low = outline[0], high = low;
@@ -24,7 +28,7 @@ RasterIntegral::RasterIntegral(const PlanarDomain& domain, const DensityRaster& 
   if (greatest != density.values.end() && *greatest > 0) exponent_ = std::ilogb(*greatest);
   std::transform(density.values.begin(), density.values.end(), weights_.begin(), [&](double d) {
     const double scaled = std::ldexp(d, -exponent_);
-    return scaled * scaled;
+    return power == 1 ? scaled : scaled * scaled;
   });
   sums_.resize(weights_.size());
   for (Index row = 0; row < rows_; ++row)
@@ -56,8 +60,8 @@ void RasterIntegral::add_piece(Index row, Index column, const Vec2& from, const 
 }
 
 // From cell to cell of the raster. Places outside the box, by rounding, belong to the cells at its sides.
-void RasterIntegral::add_edge(const Vec2& from, const Vec2& to, RasterMoments& moments) const {
-  if (from.y() == to.y()) return;
+template <class Visit>
+void RasterIntegral::for_pieces(const Vec2& from, const Vec2& to, const Visit& visit) const {
   const Vec2 step = to - from;
   const auto cell_at = [](double place, Index count) {
     return static_cast<Index>(std::clamp(std::floor(place), 0.0, static_cast<double>(count - 1)));
@@ -76,7 +80,7 @@ void RasterIntegral::add_edge(const Vec2& from, const Vec2& to, RasterMoments& m
     const double next = std::min({across_x, across_y, 1.0});
     if (next > share) {
       const Vec2 there = next < 1 ? Vec2(from + next * step) : to;
-      add_piece(row, column, here, there, moments);
+      visit(row, column, here, there);
       share = next;
       here = there;
     }
@@ -91,10 +95,48 @@ RasterMoments RasterIntegral::along(std::span<const Vec2> loop) const {
   Vec2 before = loop.back() - middle_;
   for (const Vec2& corner : loop) {
     const Vec2 here = corner - middle_;
-    add_edge(before, here, moments);
+    if (here.y() != before.y())
+      for_pieces(before, here, [&](Index row, Index column, const Vec2& from, const Vec2& to) {
+        add_piece(row, column, from, to, moments);
+      });
     before = here;
   }
   return moments;
+}
+
+double RasterIntegral::mass_between(const Vec2& from, const Vec2& to) const {
+  double mass = 0;
+  for_pieces(from - middle_, to - middle_, [&](Index row, Index column, const Vec2& a, const Vec2& b) {
+    mass += weights_[static_cast<std::size_t>(row) * columns_ + column] * (b - a).norm();
+  });
+  return mass;
+}
+
+std::vector<RasterMoments> moments_of(const ClippedCells& cells, Index count, const RasterIntegral& integral,
+                                      int threads, const JobStage& stage) {
+  const auto loop_count = static_cast<Index>(cells.loop_sites.size());
+  std::vector<RasterMoments> of_loops(loop_count), result(count);
+  parallel_for(loop_count, threads, 64, [&](Index loop, int) {
+    stage.check();
+    const Index begin = cells.loop_offsets[loop], end = cells.loop_offsets[loop + 1];
+    of_loops[loop] = integral.along(std::span(cells.points).subspan(begin, end - begin));
+  });
+  for (Index loop = 0; loop < loop_count; ++loop) result[cells.loop_sites[loop]] += of_loops[loop];
+  return result;
+}
+
+void check_density(const DensityRaster& density) {
+  if (density.values.empty()) return;
+  const auto& values = density.values;
+  if (density.rows < 1 || density.columns < 1 ||
+      values.size() != static_cast<std::size_t>(density.rows) * density.columns)
+    throw InputError(message("density: wanted ", density.rows, " rows of ", density.columns, " values, got ",
+                             values.size(), " values"));
+  const auto bad = std::find_if(values.begin(), values.end(), [](double d) { return !(d >= 0) || std::isinf(d); });
+  if (bad == values.end()) return;
+  const auto place = bad - values.begin();
+  throw InputError(message("density: wanted finite values of 0 or more, got ", *bad, " in row ",
+                           place / density.columns, ", column ", place % density.columns));
 }
 
 }  // namespace saddleback::voronoi2d

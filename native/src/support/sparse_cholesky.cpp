@@ -1,9 +1,9 @@
-#include "charts/sparse_cholesky.h"
+#include "support/sparse_cholesky.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace saddleback::charts {
+namespace saddleback {
 namespace {
 
 constexpr Index k_small = 32;  // so few unknowns are not worth cutting in half
@@ -160,4 +160,4 @@ std::vector<Vec2> SparseCholesky::solve(std::span<const Vec2> right) const {
   return result;
 }
 
-}  // namespace saddleback::charts
+}  // namespace saddleback

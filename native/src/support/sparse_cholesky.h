@@ -7,7 +7,7 @@
 #include "saddleback/job.h"
 #include "saddleback/types.h"
 
-namespace saddleback::charts {
+namespace saddleback {
 
 /// Entries off the diagonal by rows, each pair in both; and the diagonal.
 struct SymmetricMatrix {
@@ -51,4 +51,4 @@ class SparseCholesky {
   std::vector<Index> pattern_, path_, flags_;
 };
 
-}  // namespace saddleback::charts
+}  // namespace saddleback
