@@ -538,6 +538,19 @@ def power_diagram(disks: tuple[NDArray[np.float64], NDArray[np.float64]], way: W
     return [*all_of(made, DIAGRAM), *made.cells, made.locate(disks[0][::3] * 1.01), *all_of(clipped, CLIPPED)]
 
 
+PERIODIC = "vertices edges edge_shifts edge_sites edge_site_shifts corner_vertices corner_shifts delaunay areas"
+
+
+@asked({name: PLANE[name] for name in ("uniform-60", "grid-60", "duplicates-60", "uniform-5000")}, portable=True)
+def periodic_diagram(sites: NDArray[np.float64], way: Way) -> Iterable[object]:
+    weights = 1e-3 * np.random.default_rng(1).random(len(sites))
+    answer: list[object] = []
+    for given in (None, weights):
+        made = sb.periodic_voronoi_2d(sites, [(0, 0), (1, 0.5)], given, threads=way.threads)
+        answer += [*all_of(made, PERIODIC), *made.cells, made.locate(sites[::3] * 1.01)]
+    return answer
+
+
 @asked({name: disks for name, disks in WEIGHTED.items() if not name.startswith("huge")})
 def weighted_curves(disks: tuple[NDArray[np.float64], NDArray[np.float64]], way: Way) -> Iterable[object]:
     made = sb.voronoi_2d(*disks, threads=way.threads, device=way.device)

@@ -362,6 +362,8 @@ def calls(at: Inputs) -> dict[str, Call]:
         "progress_bar": lambda: contextlib.ExitStack().enter_context(sb.progress_bar(io.StringIO())),
         "project": lambda **more: sb.project(at.mesh, at.vertices * 1.1, **more),
         "quality_plot": lambda: sb.quality_plot(quality),
+        "periodic_voronoi_2d": lambda **more: sb.periodic_voronoi_2d(at.sites, **more),
+        "PeriodicVoronoi2d.locate": lambda **more: sb.periodic_voronoi_2d(at.sites[:100]).locate(at.sites, **more),
         "power_diagram_2d": lambda **more: sb.power_diagram_2d(at.sites, at.sites[:, 0] * 1e-6, **more),
         "ramp_by_distance": lambda: sb.ramp_by_distance(distances[:, 0], 1.0, 2.0, 0.5),
         "read_arrays": lambda: sb.read_arrays(at.obj),

@@ -26,6 +26,7 @@ void bind_placements(py::module_& m);
 void bind_predicates(py::module_& m);
 void bind_write_file(py::module_& m);
 void bind_read_mesh(py::module_& m);
+void bind_periodic_voronoi_2d(py::module_& m);
 void bind_relax_2d(py::module_& m);
 void bind_hausdorff_distance(py::module_& m);
 void bind_repair(py::module_& m);
@@ -180,6 +181,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_devices(m);
   bind_charts(m);
   bind_stroke_map(m);
+  bind_periodic_voronoi_2d(m);
   bind_relax_2d(m);
   bind_shapes(m);
   bind_placements(m);

@@ -197,3 +197,84 @@ def masses_of_cells(sites: Floats, rng: Random) -> None:
         assert clipped is not None
         if density.size == 1:
             assert np.abs(clipped.centroids - done.sites).max() <= (1e-4 + rounding) * side
+
+
+def corners_of(loop: list[Point]) -> list[Point]:
+    """The places where a convex polygon turns."""
+    return [
+        place
+        for before, place, after in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True)
+        if cross(before, place, after) != 0
+    ]
+
+
+@guards("periodic_voronoi_2d", "PeriodicVoronoi2d", "PeriodicVoronoi2d.locate", on="plane")
+def cells_of_a_torus(sites: Floats, rng: Random) -> None:
+    """Each cell, its corners and neighbors, against half planes of all copies two periods around, in fractions."""
+    sites = plane.some_of(sites, rng, 9)
+    low, side = plane.box_about(sites, rng)
+    box = np.array([low, low + side * np.array([1.0, rng.choice([1.0, 0.3, 0.05])])])
+    powers = random_powers(sites, rng)[0] if rng.random() < 0.4 else None
+    diagram = sb.periodic_voronoi_2d(sites, box, powers, threads=1)
+    points, weights = exact(diagram.sites), [Fraction(w) for w in (np.zeros(len(sites)) if powers is None else powers)]
+    size = exact(diagram.box)[1][0] - exact(diagram.box)[0][0], exact(diagram.box)[1][1] - exact(diagram.box)[0][1]
+    assert (diagram.sites >= diagram.box[0]).all()
+    assert (diagram.sites < diagram.box[1]).all()
+    unit = np.abs([*box, *(box + side)]).max() * 2.0**-50
+    period = np.array([float(c) for c in size])
+    periods = np.round((diagram.sites - sites) / period)
+    off = np.abs(diagram.sites - sites - periods * period)
+    assert (off <= (4 + np.abs(periods)) * unit + 4e-16 * np.abs(sites).max()).all()
+    shifts = [(x, y) for x in range(-2, 3) for y in range(-2, 3)]
+    copies = {
+        (j, shift): ((points[j][0] + shift[0] * size[0], points[j][1] + shift[1] * size[1]), weights[j])
+        for j in range(len(points))
+        for shift in shifts
+    }
+    both = list(zip(points, weights, strict=True))
+    offsets, places = diagram.cells
+    total = Fraction(0)
+    slack = plane.VERTEX_ROUNDINGS * (np.abs(diagram.box).max() + 2 * float(max(size)))
+    for i, mine in enumerate(both):
+        assert diagram.site_of[i] == both.index(mine)
+        (x, y), (across, up) = mine[0], size
+        loop = [(x - across, y - up), (x + across, y - up), (x + across, y + up), (x - across, y + up)]
+        for other in sorted(set(copies.values()) - {mine}, key=lambda c, at=mine[0]: squared(c[0], at)):  # type: ignore[misc]
+            loop = half_by_power(loop, mine, other) if loop else loop
+        area = plane.signed_area(loop) if len(loop) > 2 else Fraction(0)
+        assert (i in diagram.hidden) == (area == 0)
+        assert abs(diagram.areas[i] - float(area)) <= 8 * slack * float(max(size))
+        if both.index(mine) < i or area == 0:
+            assert offsets[i] == offsets[i + 1]
+            continue
+        total += area
+        wanted, found = rounded(corners_of(loop)), places[offsets[i] : offsets[i + 1]]
+        assert len(wanted) == len(found)
+        off_by_turn = [float(np.abs(np.roll(wanted, -turn, axis=0) - found).max()) for turn in range(len(wanted))]
+        turn = int(np.argmin(off_by_turn))
+        assert off_by_turn[turn] <= slack
+        ends = corners_of(loop)[turn:] + corners_of(loop)[:turn]
+        for k in range(len(found)):
+            edge = diagram.side_edges[offsets[i] + k]
+            left, right = diagram.edge_sites[edge].tolist()
+            shift = tuple(diagram.edge_site_shifts[edge].tolist())
+            seen = {(right, shift)} if left == i else set()
+            seen |= {(left, (-shift[0], -shift[1]))} if right == i else set()
+            assert any(
+                all(power(end, *copies[beyond]) == power(end, *mine) for end in (ends[k], ends[k - 1]))
+                for beyond in seen
+            ), "a side is not midway between its sites"
+    assert total == size[0] * size[1]
+    steps = diagram.vertices[diagram.edges[:, 1]] - diagram.vertices[diagram.edges[:, 0]]
+    steps += diagram.edge_shifts * period
+    across_sites = diagram.sites[diagram.edge_sites[:, 1]] - diagram.sites[diagram.edge_sites[:, 0]]
+    across_sites += diagram.edge_site_shifts * period
+    assert (np.abs((steps * across_sites).sum(axis=1)) <= 4 * slack * np.abs(across_sites).sum(axis=1)).all()
+    corners = diagram.sites[diagram.delaunay] + diagram.delaunay_shifts * period
+    turns = [cross(*exact(triangle)) for triangle in corners]
+    assert all(turn > 0 for turn in turns)
+    assert sum(turns) == 2 * size[0] * size[1]
+    places = np.vstack([diagram.box[0] + (diagram.box[1] - diagram.box[0]) * rng.random((4, 2)), diagram.vertices[:2]])
+    for place, nearest in zip(exact(places), diagram.locate(places, threads=1), strict=True):
+        powers_there = {j: min(power(place, *copies[j, shift]) for shift in shifts) for j in range(len(points))}
+        assert powers_there[int(nearest)] == min(powers_there.values())

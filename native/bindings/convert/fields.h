@@ -19,6 +19,8 @@
 #include "saddleback/tessellation/cell_polygons.h"
 #include "saddleback/tessellation/centroidal_voronoi.h"
 #include "saddleback/tessellation/triangle_quality.h"
+#include "saddleback/voronoi2d/balance_2d.h"
+#include "saddleback/voronoi2d/periodic_voronoi_2d.h"
 #include "saddleback/voronoi2d/relax_2d.h"
 #include "saddleback/voronoi2d/stepped_sweep.h"
 
@@ -92,6 +94,10 @@ inline auto fields_of(LiftedVoronoi& of) {
 inline auto fields_of(ClippedCells& of) {
   auto& [points, loop_offsets, loop_sites, areas, centroids] = of;
   return std::tie(points, loop_offsets, loop_sites, areas, centroids);
+}
+inline auto fields_of(Balance2d& of) {
+  auto& [sites, weights, shares, capacity_error, energy, iterations, converged, stop_reason] = of;
+  return std::tie(sites, weights, shares, capacity_error, energy, iterations, converged, stop_reason);
 }
 inline auto fields_of(Relaxation2d& of) {
   auto& [sites, energy, iterations, converged, stop_reason] = of;
@@ -170,8 +176,16 @@ inline auto fields_of(Voronoi2d& of) {
   auto& [sites, weights, powers, site_of, hidden, vertices, edges, edge_sites, device_times, cell_sites, cell_places,
          cell_offsets, corner_vertices, side_edges] = of;
   static_cast<void>(device_times);
-  return std::tie(sites, weights, powers, site_of, hidden, vertices, edges, edge_sites, cell_sites, cell_places, cell_offsets,
-                  corner_vertices, side_edges);
+  return std::tie(sites, weights, powers, site_of, hidden, vertices, edges, edge_sites, cell_sites, cell_places,
+                  cell_offsets, corner_vertices, side_edges);
+}
+inline auto fields_of(PeriodicVoronoi2d& of) {
+  auto& [low, size, sites, powers, site_of, hidden, vertices, edges, edge_shifts, edge_sites, edge_site_shifts,
+         cell_offsets, corner_vertices, corner_shifts, side_edges, triangles, triangle_shifts, around, around_sites] =
+      of;
+  return std::tie(low, size, sites, powers, site_of, hidden, vertices, edges, edge_shifts, edge_sites, edge_site_shifts,
+                  cell_offsets, corner_vertices, corner_shifts, side_edges, triangles, triangle_shifts, around,
+                  around_sites);
 }
 // NOLINTEND(readability-identifier-naming)
 

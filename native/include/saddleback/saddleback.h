@@ -57,6 +57,7 @@
 #include "saddleback/tessellation/triangle_quality.h"
 #include "saddleback/types.h"
 #include "saddleback/voronoi2d/balance_2d.h"
+#include "saddleback/voronoi2d/periodic_voronoi_2d.h"
 #include "saddleback/voronoi2d/planar_domain.h"
 #include "saddleback/voronoi2d/power_diagram_2d.h"
 #include "saddleback/voronoi2d/relax_2d.h"

@@ -2984,6 +2984,134 @@ def power_diagram_2d(
     """
 
 @final
+class PeriodicVoronoi2d:
+    """Voronoi diagram of a plane that repeats itself; made by `periodic_voronoi_2d`."""
+    @property
+    def box(self) -> _Floats:
+        """(2, 2) float64: its corners, rounded as the sites are."""
+    @property
+    def sites(self) -> _Floats:
+        """(n, 2) float64: in the box, its low sides included, rounded."""
+    @property
+    def powers(self) -> _Floats:
+        """(n,) float64: the weights of a power diagram as given, or (0,) of others."""
+    @property
+    def site_of(self) -> _Indices:
+        """(n,) int32: smallest index of an equal site; only such sites have a cell."""
+    @property
+    def hidden(self) -> _Indices:
+        """(h,) int32, ascending: sites without a cell, since heavier ones leave them none."""
+    @property
+    def vertices(self) -> _Floats:
+        """(V, 2) float64: in the box."""
+    @property
+    def edges(self) -> _Indices:
+        """(E, 2) int32 vertices."""
+    @property
+    def edge_shifts(self) -> _Indices:
+        """(E, 2) int32: by how many periods, to the right and up, the second vertex lies elsewhere than in the box, as seen from the first."""
+    @property
+    def edge_sites(self) -> _Indices:
+        """(E, 2) int32: the sites left and right of the edge; they may be the same."""
+    @property
+    def edge_site_shifts(self) -> _Indices:
+        """(E, 2) int32: the periods to the right site, as seen from the left one."""
+    @property
+    def cells(self) -> tuple[_Indices, _Floats]:
+        """(n + 1,) int32 offsets and (2 E, 2) float64 places: the cell of site i, around it and perhaps partly beside the box, is places[offsets[i]:offsets[i + 1]], counter-clockwise; empty for a site equal to an earlier one."""
+    @property
+    def corner_vertices(self) -> _Indices:
+        """(2 E,) int32: the vertices at the corners of all cells."""
+    @property
+    def corner_shifts(self) -> _Indices:
+        """(2 E, 2) int32: the periods to them, as seen from the cell's site."""
+    @property
+    def side_edges(self) -> _Indices:
+        """(2 E,) int32: the edge that ends at each corner of all cells."""
+    @property
+    def delaunay(self) -> _Indices:
+        """(T, 3) int32 sites, counter-clockwise: the triangulation of the torus; 2 for each site."""
+    @property
+    def delaunay_shifts(self) -> _Indices:
+        """(T, 3, 2) int32: the periods to each corner, as seen from the first."""
+    @property
+    def areas(self) -> _Floats:
+        """(n,) float64: of the cells; 0 for hidden sites. Equal sites have the same cell; the others' sum is the box's."""
+    @property
+    def centroids(self) -> _Floats:
+        """(n, 2) float64: centers of mass as seen from the sites, perhaps beside the box; not a number for hidden sites."""
+    def locate(self, points: ArrayLike, *, threads: SupportsIndex = 0, job: Job | None = None) -> _Indices:
+        """The site of which a copy is nearest to each point, or has the least power there; of equally near ones any.
+
+        Parameters
+        ----------
+        points : (m, 2) float array
+            Exactly what they are in the box; others are brought there by whole periods, to rounding.
+        threads : int
+            0: all cores.
+        job : Job, optional
+
+        Returns
+        -------
+        (m,) int32 array
+
+        Raises
+        ------
+        InputError
+            A coordinate that is not finite.
+        Cancelled
+            The job was cancelled.
+
+        Notes
+        -----
+        O(n + m) expected.
+        """
+
+def periodic_voronoi_2d(
+    sites: ArrayLike,
+    box: ArrayLike = ((0.0, 0.0), (1.0, 1.0)),
+    weights: ArrayLike | None = None,
+    *,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> PeriodicVoronoi2d:
+    """Voronoi diagram of sites that repeat themselves in both directions: on a torus, for seamless tiles.
+
+    Sites are brought into the box and rounded to 2^-51 of what it and its neighbors span, so that their copies by whole
+    periods are copies to the bit. Of these, which cells touch and where more than three meet is exact; only vertices are
+    rounded. Cells may touch themselves, and two cells may share several edges.
+
+    Parameters
+    ----------
+    sites : (n, 2) float array
+        Anywhere; equal ones, a period apart or not, share a cell.
+    box : (2, 2) float array
+        The lower left and the upper right corner.
+    weights : (n,) float array, optional
+        Of a power diagram, as `power_diagram_2d` takes them. None: all alike.
+    threads : int
+        0: all cores. The result does not depend on it.
+    job : Job, optional
+
+    Returns
+    -------
+    PeriodicVoronoi2d
+
+    Raises
+    ------
+    InputError
+        No sites, numbers that are not finite, a box without an area or thinner than 2^-41 of its coordinates, what
+        `voronoi_2d` and `power_diagram_2d` refuse.
+    Cancelled
+        The job was cancelled.
+
+    Notes
+    -----
+    O(n log n) time, O(n) memory: copies as far around the box as circles about its vertices reach, in most cases four
+    spacings of the sites, are part of the diagram, at most all eight neighbors.
+    """
+
+@final
 class DeviceArray:
     """Numbers in a CUDA device's memory, complete: there is nothing to wait for.
 
