@@ -159,7 +159,7 @@ class Numberer {
     }
   }
 
-  /// What is the same for a side and, seen from beyond, its twin, but that `from` and `to` change places.
+  /// Returns what a side is found by; its twin, seen from beyond, is the same with `from` and `to` exchanged.
   static std::array<Index, 4> key(Index from, Index to, const Shift& shift) { return {from, to, shift[0], shift[1]}; }
 
   // Of two sites in the box both see the same edge; one that sees a copy is seen as a copy.

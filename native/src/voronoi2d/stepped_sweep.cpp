@@ -35,7 +35,7 @@ struct ToldSweep {
       : diagram(weighted_diagram(sites, weights, job)), sweep(diagram, center, JobStage(job, "Sweeping")) {}
 };
 
-/// What a sweep has come to.
+/// Holds what a sweep has come to.
 struct Progress {
   /// An arc vanishes.
   struct Vanishing {
@@ -197,7 +197,7 @@ void SteppedSweep::State::run(double up_to, const JobStage& stage) {
   }
 }
 
-/// Before the first event is told the sweep is run to its end, and then taken back to `wanted`. Where rounding leads it
+/// Runs the sweep to its end before the first event is told, and then takes it back to `wanted`. Where rounding leads it
 /// astray, events are told from the diagram.
 void SteppedSweep::State::check(double wanted, Job* job) {
   const double before = radius;
