@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 import saddleback as sb
-from tests.truth.plane import ROUNDINGS, Floats, Random, box_about, random_domain, some_of
+from tests.truth.plane import ROUNDINGS, Floats, Random, box_about, depth_within, exact, random_domain, some_of
 from tests.truth.registry import guards
 
 
@@ -138,6 +138,68 @@ def clipped_disks(sites: Floats, rng: Random) -> None:
     for point, owner in zip(clipped.points[some], owners[some], strict=True):
         distances = scaled_distances(point, sites, weights)
         assert float(distances[owner] - min(distances)) <= 4 * max(tolerance, 2.0**-24 * size) + 1e-12 * scale
+
+
+def least_lead(places: Floats, radius: Floats, mine: Floats, other: Floats, lead: float) -> Floats:
+    """The least of |q - other| - |q - mine| + lead for q on circles about places: below 0 where the disk of `other` has
+    a part of the circle. By 128 directions, and closer and closer about the best of them.
+    """
+    turns = np.broadcast_to(np.linspace(0, 2 * np.pi, 128, endpoint=False), (len(places), 128))
+    width = 2 * np.pi / 128
+    for _ in range(5):
+        points = places[:, None] + radius[:, None, None] * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+        leads = np.linalg.norm(points - other, axis=2) - np.linalg.norm(points - mine, axis=2) + lead
+        best = leads.argmin(axis=1)
+        turns = turns[np.arange(len(places)), best][:, None] + width * np.linspace(-1, 1, 33)
+        width /= 16
+    least: Floats = leads.min(axis=1)
+    return least
+
+
+@guards("Voronoi2d.clip", on="plane")
+def inset_disks(sites: Floats, rng: Random) -> None:
+    """With a gap a place is in a cell's loops when the circle of half the gap about it is in the cell, and only then."""
+    sites = some_of(sites, rng, 8)
+    weights = random_weights(sites, rng)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    loops = random_domain(sites, rng)
+    size = float(np.ptp(loops[0], axis=0).max())
+    scale = float(max(np.abs(sites).max(), np.abs(loops[0]).max(), np.abs(weights).max()))
+    tolerance, half = size * 10.0 ** rng.uniform(-7, -3), 0.5 * size * 10.0 ** rng.uniform(-3, -0.3)
+    clipped = diagram.clip(
+        loops if len(loops) > 1 else loops[0], gap=2 * half, tolerance=tolerance, threads=1
+    )
+    assert len(clipped.points) < 200_000 * (1 + len(sites))
+    off = 2 * max(tolerance, 2.0**-24 * size) + 1e-11 * scale
+    if half <= 2 * off or scale > 1e6 * size:
+        return
+    near = clipped.points[rng.permutation(len(clipped.points))[:20]] + 20 * off * rng.uniform(-1, 1, (1, 2))
+    places = np.vstack([loops[0].min(axis=0) + size * rng.random((20, 2)), near])
+    places = places[[depth_within(loops, place) > off for place in exact(places)]]
+    found = [
+        [k for k, site in enumerate(clipped.loop_sites) if site == owner] for owner in range(len(sites))
+    ]  # fmt: skip
+    distances = np.linalg.norm(places[:, None] - sites, axis=2) - weights
+    owners = distances.argmin(axis=1)
+    for owner in np.unique(owners):
+        mine = places[owners == owner]
+        keeps, comes_near = np.ones(len(mine), bool), np.zeros(len(mine), bool)
+        for other in range(len(sites)):
+            lead = float(weights[owner] - weights[other])
+            apart = float(np.hypot(*(sites[other] - sites[owner])))
+            if apart == 0 or other in diagram.hidden or owner in diagram.hidden:
+                continue  # equal sites share a cell
+            if apart - abs(lead) < 1e-6 * apart:
+                return  # a cell so thin that a circle by numbers misses it
+            every = np.ones(len(mine))
+            keeps &= least_lead(mine, (half + off) * every, sites[owner], sites[other], lead) > 1e-12 * scale
+            comes_near |= least_lead(mine, (half - off) * every, sites[owner], sites[other], lead) < -1e-12 * scale
+        own = [clipped.points[clipped.loop_offsets[k] : clipped.loop_offsets[k + 1]] for k in found[owner]]
+        inside = [depth_within(own, place) > 0 for place in exact(mine)]
+        assert not (keeps & ~np.array(inside)).any(), f"{mine[keeps & ~np.array(inside)][0]} is missing in cell {owner}"
+        assert not (comes_near & inside).any(), f"{mine[comes_near & inside][0]} is too near to another cell"
+    strangers = set(clipped.loop_sites.tolist()) & set(diagram.hidden.tolist())
+    assert not strangers, f"hidden sites {sorted(strangers)} have loops"
 
 
 @guards("SweepCircle", "SweepCircles", on="plane")

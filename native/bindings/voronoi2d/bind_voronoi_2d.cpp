@@ -199,8 +199,8 @@ polygon : (m, 2) float array or list of such
     A simple polygon, or an outline and its holes, in any direction. Corners may be repeated in a row, and loops may touch
     other loops in points.
 gap : float
-    How far neighboring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop. Not with
-    weights.
+    How far neighboring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop, one with a
+    waist several. With weights each cell keeps half of it from all others, within the tolerance.
 tolerance : float
     How far polylines may be from curved edges; 0: a thousandth of a mean cell's width. One finer than 3.7e-9 of
     that width is taken as that, with which an edge as long as a cell is wide has some thousands of points. Neighbors

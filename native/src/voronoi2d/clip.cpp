@@ -197,7 +197,8 @@ ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, Job* job) 
 ClippedCells Voronoi2d::clip(const PlanarDomain& domain, const ClipOptions& options, const JobStage& stage) const {
   const double gap = options.gap, tolerance = options.tolerance;
   if (!(gap >= 0) || std::isinf(gap)) throw InputError(message("gap: wanted a length of 0 or more, got ", gap));
-  if (gap > 0 && !weights.empty()) throw InputError("gap: wanted 0 for sites with weights, whose edges are curved");
+  if (gap > 0 && !weights.empty() && !(domain.area() > 0))
+    throw InputError("polygon: its area is less than any number, too small for a gap between curved edges");
   if (!(tolerance >= 0)) throw InputError(message("tolerance: wanted a length of 0 or more, got ", tolerance));
   const Index count = static_cast<Index>(sites.size());
   const double side = 0.5 * std::sqrt(static_cast<double>(cell_sites.size()));
@@ -205,7 +206,8 @@ ClippedCells Voronoi2d::clip(const PlanarDomain& domain, const ClipOptions& opti
   const double mean_width = std::sqrt(domain.area() / std::max<double>(1, static_cast<double>(cell_sites.size())));
   constexpr double k_usual = 1e-3, k_finest = 0x1p-28;  // of which an edge as long as a cell is wide has thousands
   const CurvedCells curved(*this, domain, map,
-                           tolerance > 0 ? std::max(tolerance, k_finest * mean_width) : k_usual * mean_width, stage);
+                           tolerance > 0 ? std::max(tolerance, k_finest * mean_width) : k_usual * mean_width, gap,
+                           stage);
   std::vector<std::vector<Loop>> cells(count);
   ClippedCells result;
   result.areas.assign(count, 0);

@@ -41,7 +41,8 @@ struct ClippedCells {
 };
 
 struct ClipOptions {
-  double gap = 0;        ///< between neighbors: each cell is smaller by half of it, but not along the domain's sides
+  double gap = 0;        ///< between neighbors: each cell keeps half of it from all others, but not from the domain's
+                         ///< sides; parts of cells that are narrower vanish
   double tolerance = 0;  ///< of polylines along curved edges, the same for both cells, whose areas are those of the
                          ///< polygons; 0: a thousandth of a mean cell's width, of which it is 2^-28 at least
   int threads = 0;       ///< 0: all cores
@@ -93,8 +94,7 @@ struct Voronoi2d {
   std::vector<Vec2> centroids() const;
   /// The cells within a domain. O(n) plus, for cells at the domain's edges, O(corners of the domain). \throw Cancelled
   ClippedCells clip(const PlanarDomain& domain, int threads = 0, Job* job = nullptr) const;
-  /// Does the same as a part of other work. \throw InputError for lengths that are negative or not finite, and for a
-  /// gap between curved edges.
+  /// Does the same as a part of other work. \throw InputError for lengths that are negative or not finite.
   ClippedCells clip(const PlanarDomain& domain, const ClipOptions& options, const JobStage& stage) const;
   /// (m) nearest site of each point (of a power diagram the one with the least power there), exactly; of equally near
   /// ones the smallest index. Hidden sites are nowhere nearest. O(m + n) expected.

@@ -12,6 +12,7 @@
 
 #include "predicates/predicates.h"
 #include "support/planar.h"
+#include "voronoi2d/clipping/inset_outline.h"
 #include "voronoi2d/diagram/edge_curve.h"
 
 namespace saddleback::voronoi2d {
@@ -75,8 +76,10 @@ struct Chain {
   double in, out;
 };
 
-/// Cuts a loop into chains; true when it does not meet the outline.
-bool cut_loop(const Loop& outline, const Loop& loop, std::vector<Chain>& chains, const JobStage& stage) {
+/// Cuts a loop into chains; true when it does not meet the outline. `is_far` says which sides of the loop cannot.
+template <class IsFar>
+bool cut_loop(const Loop& outline, const Loop& loop, std::vector<Chain>& chains, const JobStage& stage,
+              const IsFar& is_far) {
   std::vector<Passage> passages;
   std::vector<Chain> found;
   Chain first;  // up to the first way out, of one that has come in before the loop's first point
@@ -86,6 +89,7 @@ bool cut_loop(const Loop& outline, const Loop& loop, std::vector<Chain>& chains,
     stage.check();
     const Vec2 &a = loop[i], &b = loop[i + 1 == loop.size() ? 0 : i + 1];
     if (is_in) add_point(current->points, a);
+    if (is_far(a, b)) continue;
     find_passages(outline, a, b, passages);
     for (const Passage& passage : passages) {
       const Vec2 point = a + passage.share * (b - a);
@@ -156,8 +160,8 @@ void add_far_points(const Vec2& site, double distance, const Vec2& end, const Ve
 }  // namespace
 
 CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance,
-                         const JobStage& stage)
-    : diagram_(diagram), domain_(domain), map_(map), stage_(stage), tolerance_(tolerance) {
+                         double gap, const JobStage& stage)
+    : diagram_(diagram), domain_(domain), map_(map), stage_(stage), tolerance_(tolerance), distance_(0.5 * gap) {
   low_ = high_ = domain.loops()[0][0];
   for (const Vec2& point : domain.loops()[0]) low_ = low_.cwiseMin(point), high_ = high_.cwiseMax(point);
 }
@@ -201,7 +205,7 @@ Loop CurvedCells::outline(Index site) const {
   return loop;
 }
 
-std::vector<Loop> CurvedCells::clip(Index site) const {
+std::vector<Loop> CurvedCells::whole(Index site) const {
   Loop cell = outline(site);
   Vec2 low = cell[0], high = low;
   for (const Vec2& point : cell) low = low.cwiseMin(point), high = high.cwiseMax(point);
@@ -216,11 +220,60 @@ std::vector<Loop> CurvedCells::clip(Index site) const {
   std::vector<Loop> loops;
   std::vector<Chain> chains;
   for (const Loop& loop : domain_.loops())
-    if (cut_loop(cell, loop, chains, stage_) && is_inside(cell, loop[0])) loops.push_back(loop);
+    if (cut_loop(cell, loop, chains, stage_, [](const Vec2&, const Vec2&) { return false; }) &&
+        is_inside(cell, loop[0]))
+      loops.push_back(loop);
   if (!chains.empty()) {
     join_chains(cell, chains, loops);
   } else if (domain_.contains(cell[0])) {
     loops.insert(loops.begin(), std::move(cell));
+  }
+  return loops;
+}
+
+// What is nearer to one site than to another, by twice a distance and more, is as far from the curve between them.
+void CurvedCells::keep_distance(Index site, Index other, std::vector<Loop>& loops) const {
+  const Vec2 &mine = diagram_.sites[site], &theirs = diagram_.sites[other];
+  const double ahead = diagram_.weights[site] - diagram_.weights[other];
+  constexpr double k_rounding = 1e-14;
+  const auto depth = [&](const Vec2& p) {
+    const double to_mine = (p - mine).norm(), to_theirs = (p - theirs).norm();
+    return 0.5 * (to_theirs - to_mine + ahead) - k_rounding * (to_mine + to_theirs + std::fabs(ahead));
+  };
+  const auto is_far = [&](const Vec2& a, const Vec2& b) {
+    return std::min(depth(a), depth(b)) > distance_ + tolerance_ + 0.5 * (b - a).norm();
+  };
+  Vec2 low = loops[0][0], high = low;
+  bool is_all_far = true;
+  for (const Loop& loop : loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      low = low.cwiseMin(loop[i]), high = high.cwiseMax(loop[i]);
+      is_all_far = is_all_far && is_far(loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]);
+    }
+  if (is_all_far) return;
+  const Loop outline = inset_outline({weighted_site(diagram_, site), weighted_site(diagram_, other)}, distance_,
+                                     tolerance_, 0.5 * (low + high), 0.5 * (high - low).norm());
+  std::vector<Loop> kept;
+  std::vector<Chain> chains;
+  for (Loop& loop : loops)
+    if (cut_loop(outline, loop, chains, stage_, is_far) && is_inside(outline, loop[0])) kept.push_back(std::move(loop));
+  join_chains(outline, chains, kept);
+  loops.swap(kept);
+}
+
+std::vector<Loop> CurvedCells::clip(Index site) const {
+  std::vector<Loop> loops = whole(site);
+  if (distance_ == 0) return loops;
+  std::vector<Index> others;
+  for (const Index edge : diagram_.cell_edges(site)) {
+    const auto [left, right] = diagram_.edge_sites[edge];
+    others.push_back(left == site ? right : left);
+  }
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  for (const Index other : others) {
+    if (loops.empty()) break;
+    keep_distance(site, other, loops);
   }
   return loops;
 }

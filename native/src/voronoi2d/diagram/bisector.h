@@ -19,6 +19,11 @@ class Bisector {
   Bisector(const WeightedPoint2& left, const WeightedPoint2& right, const Vec2& origin = Vec2(0, 0));
 
   Vec2 at(double t) const;
+  Vec2 slope(double t) const;
+  const Vec2& middle() const { return middle_; }
+  /// Returns the length of p, negative where the curve is bent to the left.
+  double p_length() const { return p_length_; }
+  double q_length() const { return q_length_; }
   /// Returns the parameter of a point of the curve.
   double parameter(const Vec2& point) const;
   /// Unit vector towards which the curve goes: for t to infinity, or outwards for t to minus infinity.
@@ -40,7 +45,6 @@ class Bisector {
   Segment segment(double from, double to) const;
 
  private:
-  Vec2 slope(double t) const;
   double farthest_from_chord(double from, double to) const;
   /// Divides a part of the curve that goes farther than that from its chord.
   void divide(double from, double to, double tolerance, std::vector<Vec2>& points) const;

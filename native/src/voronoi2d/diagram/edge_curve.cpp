@@ -8,11 +8,6 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-WeightedPoint2 weighted_site(const Voronoi2d& diagram, Index site) {
-  const Vec2& place = diagram.sites[site];
-  return {place.x(), place.y(), diagram.weights.empty() ? 0 : diagram.weights[site]};
-}
-
 // Halves and a largest component of 1 keep squares among the doubles.
 Vec2 direction_between(const Vec2& a, const Vec2& b) {
   Vec2 way = 0.5 * b - 0.5 * a;
@@ -30,6 +25,11 @@ Vec2 middle_between(const Voronoi2d& diagram, Index a, Index b) {
   const Vec2 way = at_b - at_a;
   const double length = way.stableNorm();
   return middle + 0.5 * ((diagram.powers[a] - diagram.powers[b]) / length) * (way / length);
+}
+
+WeightedPoint2 weighted_site(const Voronoi2d& diagram, Index site) {
+  const Vec2& place = diagram.sites[site];
+  return {place.x(), place.y(), diagram.weights.empty() ? 0 : diagram.weights[site]};
 }
 
 Bisector edge_bisector(const Voronoi2d& diagram, Index edge) {

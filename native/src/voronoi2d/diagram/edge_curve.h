@@ -11,6 +11,9 @@ namespace saddleback::voronoi2d {
 /// of sites in either order the same, to the last bit.
 Vec2 middle_between(const Voronoi2d& diagram, Index a, Index b);
 
+/// A site with its weight, 0 in a diagram without.
+WeightedPoint2 weighted_site(const Voronoi2d& diagram, Index site);
+
 /// The curve of an edge, from its first to its second vertex.
 Bisector edge_bisector(const Voronoi2d& diagram, Index edge);
 
