@@ -591,6 +591,18 @@ def balanced_2d(sites: NDArray[np.float64], way: Way) -> Iterable[object]:
     return answer
 
 
+@asked({"uniform-60": PLANE["uniform-60"]})
+def weighted_gaps_and_areas(sites: NDArray[np.float64], way: Way) -> Iterable[object]:
+    weights = 0.1 * np.random.default_rng(1).random(len(sites))
+    clipped = sb.voronoi_2d(sites, weights, threads=way.threads).clip(HOLED, gap=0.02, threads=way.threads)
+    relaxed = sb.relax_2d(sites, HOLED, max_iterations=4, weights=weights, threads=way.threads)
+    found = sb.weights_for_areas(0.1 + 0.8 * sites, SQUARE, max_iterations=4, threads=way.threads)
+    answer: list[object] = []
+    answer += all_of(clipped, "points loop_offsets loop_sites areas")
+    answer += all_of(relaxed, "sites energy iterations converged")
+    return answer + all_of(found, "weights shares lacks iterations converged")
+
+
 @asked(USUAL)
 def sweep_circle(sites: NDArray[np.float64]) -> Iterable[object]:
     size = float(np.ptp(sites, axis=0).max())

@@ -374,6 +374,7 @@ def calls(at: Inputs) -> dict[str, Call]:
             heights, at.triangles, at.cell_of_triangle, [0.1], 1e-2
         ),
         "balance_2d": lambda **more: sb.balance_2d(at.sites[:300], SQUARE, max_iterations=3, **more),
+        "weights_for_areas": lambda **more: sb.weights_for_areas(at.sites[:300], SQUARE, max_iterations=3, **more),
         "relax_2d": lambda **more: sb.relax_2d(at.sites, SQUARE, max_iterations=5, **more),
         "release_pinned_memory": sb.release_pinned_memory,
         "repair": lambda: sb.repair(

@@ -10,7 +10,17 @@ from itertools import pairwise
 import numpy as np
 
 import saddleback as sb
-from tests.truth.plane import ROUNDINGS, Floats, Random, box_about, depth_within, exact, random_domain, some_of
+from tests.truth.plane import (
+    ROUNDINGS,
+    SQUARE,
+    Floats,
+    Random,
+    box_about,
+    depth_within,
+    exact,
+    random_domain,
+    some_of,
+)
 from tests.truth.registry import guards
 
 
@@ -158,7 +168,7 @@ def least_lead(places: Floats, radius: Floats, mine: Floats, other: Floats, lead
 
 @guards("Voronoi2d.clip", on="plane")
 def inset_disks(sites: Floats, rng: Random) -> None:
-    """With a gap a place is in a cell's loops when the circle of half the gap about it is in the cell, and only then."""
+    """With a gap a place is in a cell's loops just when the circle of half the gap about it is in the cell."""
     sites = some_of(sites, rng, 8)
     weights = random_weights(sites, rng)
     diagram = sb.voronoi_2d(sites, weights, threads=1)
@@ -166,9 +176,7 @@ def inset_disks(sites: Floats, rng: Random) -> None:
     size = float(np.ptp(loops[0], axis=0).max())
     scale = float(max(np.abs(sites).max(), np.abs(loops[0]).max(), np.abs(weights).max()))
     tolerance, half = size * 10.0 ** rng.uniform(-7, -3), 0.5 * size * 10.0 ** rng.uniform(-3, -0.3)
-    clipped = diagram.clip(
-        loops if len(loops) > 1 else loops[0], gap=2 * half, tolerance=tolerance, threads=1
-    )
+    clipped = diagram.clip(loops if len(loops) > 1 else loops[0], gap=2 * half, tolerance=tolerance, threads=1)
     assert len(clipped.points) < 200_000 * (1 + len(sites))
     off = 2 * max(tolerance, 2.0**-24 * size) + 1e-11 * scale
     if half <= 2 * off or scale > 1e6 * size:
@@ -200,6 +208,65 @@ def inset_disks(sites: Floats, rng: Random) -> None:
         assert not (comes_near & inside).any(), f"{mine[comes_near & inside][0]} is too near to another cell"
     strangers = set(clipped.loop_sites.tolist()) & set(diagram.hidden.tolist())
     assert not strangers, f"hidden sites {sorted(strangers)} have loops"
+
+
+def polar_moments(sites: Floats, weights: Floats, low: Floats, side: float) -> tuple[Floats, Floats]:
+    """Areas and centers of mass of cells within a square, about sites in it, which see all of their cells: by how far
+    it is to the nearest side and to each other site's curve, r (d.u + w) = (d^2 - w^2) / 2, in 8,192 directions.
+    """
+    turn = 2 * np.pi * (np.arange(8192) + 0.5) / 8192
+    u = np.column_stack([np.cos(turn), np.sin(turn)])
+    areas, centers = np.zeros(len(sites)), np.array(sites)
+    for i, (site, weight) in enumerate(zip(sites, weights, strict=True)):
+        sides = np.where(u > 0, (low + side - site) / u, (low - site) / u)
+        reach = sides.min(axis=1)
+        for other, lead in zip(sites, weights - weight, strict=True):
+            d = other - site
+            if d @ d <= lead * lead:  # one of them is hidden, or it is the same
+                reach = reach * (not (lead > 0))
+                continue
+            rest = u @ d + lead
+            reach = np.minimum(
+                reach, np.where(rest > 0, 0.5 * (d @ d - lead * lead) / np.where(rest > 0, rest, 1), np.inf)
+            )
+        areas[i] = np.pi * (reach**2).mean()
+        if areas[i] > 0:
+            centers[i] = site + 2 * np.pi / 3 * (reach[:, None] ** 3 * u).mean(axis=0) / areas[i]
+    return areas, centers
+
+
+@guards("weights_for_areas", "AreaWeights", on="plane")
+def wanted_areas(sites: Floats, rng: Random) -> None:
+    """Areas of disks' cells are the wanted ones, by integrals over directions; what is missing falls in each step."""
+    low, side = box_about(sites, rng)
+    if np.abs(low).max() > 1e6 * side:
+        return
+    sites = low + side * rng.random((int(rng.integers(1, 9)), 2))
+    wanted = rng.random(len(sites)) + 0.05
+    found = sb.weights_for_areas(sites, low + side * np.array(SQUARE), wanted, tolerance=1e-5, threads=1)
+    assert found.converged and found.error <= 1e-5, found.stop_reason
+    assert (np.diff(found.lacks) < 0).all() and len(found.lacks) == found.iterations + 1
+    areas, _ = polar_moments(sites, found.weights, low, side)
+    assert abs(found.weights.mean()) <= 1e-9 * side
+    assert np.abs(found.shares / wanted * wanted.sum() - 1).max() <= 1.01e-5
+    assert np.abs(areas / side**2 / wanted * wanted.sum() - 1).max() <= 1e-3
+
+
+@guards("relax_2d", "Relaxation2d", on="plane")
+def resting_disks(sites: Floats, rng: Random) -> None:
+    """Disks at rest are in the centers of mass of their cells, by integrals over directions; hidden ones stayed."""
+    low, side = box_about(sites, rng)
+    if np.abs(low).max() > 1e6 * side:
+        return
+    sites = low + side * rng.random((int(rng.integers(1, 9)), 2))
+    weights = rng.choice([0.05, 0.3]) * side * rng.random(len(sites)) / len(sites) ** 0.5
+    done = sb.relax_2d(
+        sites, low + side * np.array(SQUARE), max_iterations=400, tolerance=1e-5, weights=weights, threads=1
+    )
+    areas, centers = polar_moments(done.sites, weights, low, side)
+    off = np.linalg.norm(centers - done.sites, axis=1)
+    if done.converged:
+        assert off[areas > 1e-4 * side**2].max() <= 3e-3 * side, f"{off.max()} off"
 
 
 @guards("SweepCircle", "SweepCircles", on="plane")

@@ -72,7 +72,10 @@ density : (rows, columns) float array or callable, optional
     (k,) densities; it is asked once, in the middles of `samples` by `samples` rectangles. None: uniform.
 max_iterations : int
 tolerance : float
-    Stop when the energy falls by less than this share of itself.
+    Stop when the energy falls by less than this share of itself; with weights when no site moves farther than this share
+    of a mean cell's width.
+weights : (n,) float array, optional
+    Of `voronoi_2d`: cells are those of disks, which keep their radii. Hidden sites stay.
 samples : int
     Of a callable, each way.
 threads : int
@@ -86,17 +89,58 @@ Relaxation2d
 Raises
 ------
 InputError
-    No sites, a coordinate that is not finite, a density that is negative, not finite or 0 all over the domain, options
-    out of range.
+    No sites, a coordinate or weight that is not finite, a wrong number of weights, a density that is negative, not
+    finite or 0 all over the domain, options out of range.
 Cancelled
     The job was cancelled.
 
 Notes
 -----
 Per iteration O(n log n + rectangles that borders of cells cross). The energy is the integral of density^2 times squared
-distance and never rises; integrals over cells are exact for the rectangles. S. Lloyd: Least squares quantization in
+distance and never rises; with weights, whose cells are not the best for it, it may rise by little. Integrals over cells
+are exact for the rectangles. S. Lloyd: Least squares quantization in
 PCM, 1982. Q. Du, V. Faber, M. Gunzburger: Centroidal Voronoi Tessellations, 1999. A. Secord: Weighted Voronoi
 stippling, 2002.)";
+
+constexpr const char* k_areas_doc =
+    R"(Finds the weights with which the cells of `voronoi_2d(sites, weights)`, within a domain, have given areas.
+
+Parameters
+----------
+sites : (n, 2) float array
+    They stay. Without weights each needs some area: refused are sites outside, where the density is 0, or equal to others.
+domain : (m, 2) float array or list of such
+    A simple polygon, or an outline and its holes.
+areas : (n,) float array, optional
+    The wanted areas, in proportion. None: all alike.
+density : (rows, columns) float array or callable, optional
+    As in `relax_2d`; its mass is wanted instead of area. None: uniform.
+tolerance : float
+    How far a cell's area may be from the wanted one, in shares of that. Polylines along curves are as fine as it takes.
+max_iterations : int
+samples : int
+    Of a callable, each way.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+AreaWeights
+
+Raises
+------
+InputError
+    No sites, a coordinate that is not finite, a site that has no area without weights, a density that is negative, not
+    finite or 0 all over the domain, areas that are not positive or of another number, options out of range.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+Such weights exist for any areas: those of optimal transport whose cost is the distance. By Newton's method with steps
+short enough that no cell is lost and less is missing each time. O(n^1.5 + rectangles that borders cross) a step. J.
+Kitagawa, Q. Merigot, B. Thibert: Convergence of a Newton algorithm for semi-discrete optimal transport, 2019.)";
 
 /// The raster as rows of doubles; keep `values` alive while the raster is used.
 struct DensityIn {
@@ -138,12 +182,14 @@ DensityIn as_density(const py::object& value, const PlanarDomain& domain, Index 
 }
 
 Relaxation2d relax(const py::object& sites, const py::object& domain, const py::object& density,
-                   const py::object& max_iterations, const py::object& tolerance, const py::object& samples,
-                   const py::object& threads, const py::object& job) {
+                   const py::object& max_iterations, const py::object& tolerance, const py::object& weights,
+                   const py::object& samples, const py::object& threads, const py::object& job) {
   const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  const std::vector<double> radii = as_weights(weights, points.size());
   const PlanarDomain within = as_domain(domain, "domain");
   const DensityIn raster = as_density(density, within, as_integer(samples, "samples"));
   const Relaxation2dOptions options{.density = raster.raster,
+                                    .weights = radii,
                                     .max_iterations = as_integer(max_iterations, "max_iterations"),
                                     .tolerance = as_real(tolerance, "tolerance"),
                                     .threads = as_integer(threads, "threads")};
@@ -170,6 +216,28 @@ Balance2d balance(const py::object& sites, const py::object& domain, const py::o
   return without_gil([&] { return balance_2d(points, within, options, token); });
 }
 
+AreaWeights weigh(const py::object& sites, const py::object& domain, const py::object& areas, const py::object& density,
+                  const py::object& tolerance, const py::object& max_iterations, const py::object& samples,
+                  const py::object& threads, const py::object& job) {
+  const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  const PlanarDomain within = as_domain(domain, "domain");
+  const DensityIn raster = as_density(density, within, as_integer(samples, "samples"));
+  ArrayIn<double> wanted;
+  if (!areas.is_none()) wanted = as_reals(areas, "areas", static_cast<Index>(points.size()));
+  const AreaWeightsOptions options{.density = raster.raster,
+                                   .areas = wanted.values,
+                                   .tolerance = as_real(tolerance, "tolerance"),
+                                   .max_iterations = as_integer(max_iterations, "max_iterations"),
+                                   .threads = as_integer(threads, "threads")};
+  const JobIn token(job);
+  return without_gil([&] { return weights_for_areas(points, within, options, token); });
+}
+
+template <auto Member>
+py::array weights_array(const py::object& self) {
+  return view_of(std::span(py::cast<const AreaWeights&>(self).*Member), self);
+}
+
 template <auto Member>
 py::array balance_array(const py::object& self) {
   return view_of(std::span(py::cast<const Balance2d&>(self).*Member), self);
@@ -188,7 +256,7 @@ void bind_relax_2d(py::module_& m) {
       .def_property_readonly(
           "energy",
           [](const py::object& self) { return view_of(std::span(py::cast<const Relaxation2d&>(self).energy), self); },
-          "(iterations + 1,) float64: of the start and after each iteration; never rises.")
+          "(iterations + 1,) float64: of the start and after each iteration; never rises without weights.")
       .def_readonly("iterations", &Relaxation2d::iterations, "Steps done.")
       .def_readonly("converged", &Relaxation2d::converged, "True if the sites rest.")
       .def_readonly("stop_reason", &Relaxation2d::stop_reason, "The reason why it ended.")
@@ -217,13 +285,33 @@ void bind_relax_2d(py::module_& m) {
       .def("__repr__", [](const Balance2d& r) {
         return message("<saddleback.Balance2d of ", r.sites.size(), " sites after ", r.iterations, " iterations>");
       });
+  py::class_<AreaWeights>(m, "AreaWeights", py::module_local(),
+                          "Weights with which cells have given areas; made by `weights_for_areas`.")
+      .def_property_readonly("weights", &weights_array<&AreaWeights::weights>,
+                             "(n,) float64: of `voronoi_2d`; their mean is 0.")
+      .def_property_readonly("shares", &weights_array<&AreaWeights::shares>,
+                             "(n,) float64: of the domain's area, or of its mass, in each cell.")
+      .def_property_readonly("lacks", &weights_array<&AreaWeights::lacks>,
+                             "(iterations + 1,) float64: what cells lack or have too much, in shares of the whole, as "
+                             "the root of the sum of "
+                             "squares: of equal weights and after each iteration. Falls each time.")
+      .def_readonly("error", &AreaWeights::error, "The largest of a cell's, in shares of the wanted area.")
+      .def_readonly("iterations", &AreaWeights::iterations, "Steps of Newton's method.")
+      .def_readonly("converged", &AreaWeights::converged, "True if the error is within the tolerance.")
+      .def_readonly("stop_reason", &AreaWeights::stop_reason, "The reason why it ended.")
+      .def("__repr__", [](const AreaWeights& r) {
+        return message("<saddleback.AreaWeights of ", r.weights.size(), " cells, at most ", r.error, " off>");
+      });
   m.def("balance_2d", &balance, py::arg("sites"), py::arg("domain"), py::arg("density") = py::none(),
         py::arg("capacities") = py::none(), py::arg("max_iterations") = 50, py::arg("tolerance") = 1e-4, py::kw_only(),
         py::arg("capacity_tolerance") = 1e-5, py::arg("samples") = 512, py::arg("threads") = 0,
         py::arg("job") = py::none(), k_balance_doc);
   m.def("relax_2d", &relax, py::arg("sites"), py::arg("domain"), py::arg("density") = py::none(),
-        py::arg("max_iterations") = 100, py::arg("tolerance") = 1e-6, py::kw_only(), py::arg("samples") = 512,
-        py::arg("threads") = 0, py::arg("job") = py::none(), k_doc);
+        py::arg("max_iterations") = 100, py::arg("tolerance") = 1e-6, py::kw_only(), py::arg("weights") = py::none(),
+        py::arg("samples") = 512, py::arg("threads") = 0, py::arg("job") = py::none(), k_doc);
+  m.def("weights_for_areas", &weigh, py::arg("sites"), py::arg("domain"), py::arg("areas") = py::none(),
+        py::arg("density") = py::none(), py::kw_only(), py::arg("tolerance") = 1e-4, py::arg("max_iterations") = 60,
+        py::arg("samples") = 512, py::arg("threads") = 0, py::arg("job") = py::none(), k_areas_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -7,6 +7,7 @@ from saddleback import _interpreter  # noqa: F401  (first: before the compiled m
 from saddleback import _content, _conversions, _notebook  # noqa: F401  (they give the classes what Python does better)
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
+    AreaWeights,
     BakedCells,
     Balance2d,
     BarredMesh,
@@ -118,6 +119,7 @@ from saddleback._saddleback import (
     vertex_normals,
     voronoi_2d,
     voronoi_2d_on_device,
+    weights_for_areas,
 )
 from saddleback.density_match import DensityMatch, density_match
 from saddleback.mesh_files import write_curves, write_mesh
@@ -128,6 +130,7 @@ from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_di
 from saddleback.viewers import plot, show
 
 __all__ = [
+    "AreaWeights",
     "BakedCells",
     "Balance2d",
     "BarredMesh",
@@ -253,6 +256,7 @@ __all__ = [
     "vertex_normals",
     "voronoi_2d",
     "voronoi_2d_on_device",
+    "weights_for_areas",
     "write_curves",
     "write_mesh",
     "write_placements",

@@ -2824,8 +2824,8 @@ class Voronoi2d:
             A simple polygon, or an outline and its holes, in any direction. Corners may be repeated in a row, and loops may touch
             other loops in points.
         gap : float
-            How far neighboring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop. Not with
-            weights.
+            How far neighboring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop, one with a
+            waist several. With weights each cell keeps half of it from all others, within the tolerance.
         tolerance : float
             How far polylines may be from curved edges; 0: a thousandth of a mean cell's width. One finer than 3.7e-9 of
             that width is taken as that, with which an edge as long as a cell is wide has some thousands of points. Neighbors
@@ -3456,7 +3456,7 @@ class Relaxation2d:
         """(n, 2) float64."""
     @property
     def energy(self) -> _Floats:
-        """(iterations + 1,) float64: of the start and after each iteration; never rises."""
+        """(iterations + 1,) float64: of the start and after each iteration; never rises without weights."""
     @property
     def iterations(self) -> int:
         """Steps done."""
@@ -3557,6 +3557,83 @@ def balance_2d(
     a Newton algorithm for semi-discrete optimal transport, 2019.
     """
 
+@final
+class AreaWeights:
+    """Weights with which cells have given areas; made by `weights_for_areas`."""
+    @property
+    def weights(self) -> _Floats:
+        """(n,) float64: of `voronoi_2d`; their mean is 0."""
+    @property
+    def shares(self) -> _Floats:
+        """(n,) float64: of the domain's area, or of its mass, in each cell."""
+    @property
+    def lacks(self) -> _Floats:
+        """(iterations + 1,) float64: what cells lack or have too much, in shares of the whole, as the root of the sum of squares: of equal weights and after each iteration. Falls each time."""
+    @property
+    def error(self) -> float:
+        """The largest of a cell's, in shares of the wanted area."""
+    @property
+    def iterations(self) -> int:
+        """Steps of Newton's method."""
+    @property
+    def converged(self) -> bool:
+        """True if the error is within the tolerance."""
+    @property
+    def stop_reason(self) -> str:
+        """The reason why it ended."""
+
+def weights_for_areas(
+    sites: ArrayLike,
+    domain: _Domain,
+    areas: ArrayLike | None = None,
+    density: ArrayLike | Callable[[_Floats], ArrayLike] | None = None,
+    *,
+    tolerance: SupportsFloat = 1e-4,
+    max_iterations: SupportsIndex = 60,
+    samples: SupportsIndex = 512,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> AreaWeights:
+    """Finds the weights with which the cells of `voronoi_2d(sites, weights)`, within a domain, have given areas.
+
+    Parameters
+    ----------
+    sites : (n, 2) float array
+        They stay. Without weights each needs some area: refused are sites outside, where the density is 0, or equal to others.
+    domain : (m, 2) float array or list of such
+        A simple polygon, or an outline and its holes.
+    areas : (n,) float array, optional
+        The wanted areas, in proportion. None: all alike.
+    density : (rows, columns) float array or callable, optional
+        As in `relax_2d`; its mass is wanted instead of area. None: uniform.
+    tolerance : float
+        How far a cell's area may be from the wanted one, in shares of that. Polylines along curves are as fine as it takes.
+    max_iterations : int
+    samples : int
+        Of a callable, each way.
+    threads : int
+        0: all cores. The result does not depend on it.
+    job : Job, optional
+
+    Returns
+    -------
+    AreaWeights
+
+    Raises
+    ------
+    InputError
+        No sites, a coordinate that is not finite, a site that has no area without weights, a density that is negative, not
+        finite or 0 all over the domain, areas that are not positive or of another number, options out of range.
+    Cancelled
+        The job was cancelled.
+
+    Notes
+    -----
+    Such weights exist for any areas: those of optimal transport whose cost is the distance. By Newton's method with steps
+    short enough that no cell is lost and less is missing each time. O(n^1.5 + rectangles that borders cross) a step. J.
+    Kitagawa, Q. Merigot, B. Thibert: Convergence of a Newton algorithm for semi-discrete optimal transport, 2019.
+    """
+
 def relax_2d(
     sites: ArrayLike,
     domain: _Domain,
@@ -3564,6 +3641,7 @@ def relax_2d(
     max_iterations: SupportsIndex = 100,
     tolerance: SupportsFloat = 1e-6,
     *,
+    weights: ArrayLike | None = None,
     samples: SupportsIndex = 512,
     threads: SupportsIndex = 0,
     job: Job | None = None,
@@ -3582,7 +3660,10 @@ def relax_2d(
         (k,) densities; it is asked once, in the middles of `samples` by `samples` rectangles. None: uniform.
     max_iterations : int
     tolerance : float
-        Stop when the energy falls by less than this share of itself.
+        Stop when the energy falls by less than this share of itself; with weights when no site moves farther than this share
+        of a mean cell's width.
+    weights : (n,) float array, optional
+        Of `voronoi_2d`: cells are those of disks, which keep their radii. Hidden sites stay.
     samples : int
         Of a callable, each way.
     threads : int
@@ -3596,15 +3677,16 @@ def relax_2d(
     Raises
     ------
     InputError
-        No sites, a coordinate that is not finite, a density that is negative, not finite or 0 all over the domain, options
-        out of range.
+        No sites, a coordinate or weight that is not finite, a wrong number of weights, a density that is negative, not
+        finite or 0 all over the domain, options out of range.
     Cancelled
         The job was cancelled.
 
     Notes
     -----
     Per iteration O(n log n + rectangles that borders of cells cross). The energy is the integral of density^2 times squared
-    distance and never rises; integrals over cells are exact for the rectangles. S. Lloyd: Least squares quantization in
+    distance and never rises; with weights, whose cells are not the best for it, it may rise by little. Integrals over cells
+    are exact for the rectangles. S. Lloyd: Least squares quantization in
     PCM, 1982. Q. Du, V. Faber, M. Gunzburger: Centroidal Voronoi Tessellations, 1999. A. Secord: Weighted Voronoi
     stippling, 2002.
     """

@@ -22,6 +22,17 @@ using voronoi2d::EdgesWithin;
 using voronoi2d::RasterIntegral;
 using voronoi2d::RasterMoments;
 
+void check_capacities(const char* name, const char* of_one, std::span<const double> capacities, std::size_t count) {
+  if (capacities.empty()) return;
+  if (capacities.size() != count)
+    throw InputError(message(name, ": wanted one for each of ", count, " sites, got ", capacities.size()));
+  for (std::size_t i = 0; i < capacities.size(); ++i)
+    if (!(capacities[i] > 0) || std::isinf(capacities[i]))
+      throw InputError(message(name, ": ", of_one, " ", i, " is ", capacities[i], ", wanted a positive number"));
+  if (!std::isfinite(std::accumulate(capacities.begin(), capacities.end(), 0.0)))
+    throw InputError(message(name, ": their sum is more than any number"));
+}
+
 void check_options(std::span<const Vec2> sites, const Balance2dOptions& options) {
   if (sites.empty()) throw InputError("sites: wanted at least one site, got none");
   if (options.max_iterations < 0)
@@ -31,12 +42,8 @@ void check_options(std::span<const Vec2> sites, const Balance2dOptions& options)
     if (!(value >= 0)) throw InputError(message(name, ": wanted 0 or more, got ", value));
   voronoi2d::check_density(options.density);
   const std::span<const double> capacities = options.capacities;
+  check_capacities("capacities", "capacity", capacities, sites.size());
   if (capacities.empty()) return;
-  if (capacities.size() != sites.size())
-    throw InputError(message("capacities: wanted one for each of ", sites.size(), " sites, got ", capacities.size()));
-  for (std::size_t i = 0; i < capacities.size(); ++i)
-    if (!(capacities[i] > 0) || std::isinf(capacities[i]))
-      throw InputError(message("capacities: capacity ", i, " is ", capacities[i], ", wanted a positive number"));
   const double sum = std::accumulate(capacities.begin(), capacities.end(), 0.0);
   constexpr double k_slack = 1e-6;
   if (std::fabs(sum - 1) > k_slack)
@@ -56,9 +63,12 @@ struct State {
 
 class Balancer {
  public:
-  Balancer(std::size_t count, const PlanarDomain& domain, const Balance2dOptions& options)
+  /// Says whether cells are those of the power diagram, or of the additively weighted one.
+  enum class Cells { power, curved };
+  Balancer(std::size_t count, const PlanarDomain& domain, const Balance2dOptions& options, Cells kind)
       : domain_(domain),
         options_(options),
+        is_curved_(kind == Cells::curved),
         integral_(domain, options.density, 1),
         map_(domain, std::clamp(static_cast<Index>(0.5 * std::sqrt(static_cast<double>(count))), 1, 1024)) {
     RasterMoments whole;
@@ -75,14 +85,14 @@ class Balancer {
     Balance2d result;
     result.stop_reason = "max_iterations";
     State state = filled({sites.begin(), sites.end()}, stage.part(0, 0.2 * part));
-    state = balanced(std::move(state), stage.part(0.2 * part, part, "Weighing cells"));
+    state = balanced(std::move(state), stage.part(0.2 * part, part, "Weighing cells"), k_most_steps);
     result.energy.push_back(energy_of(state));
     bool is_at_rest = options_.max_iterations == 0;
     while (result.iterations < options_.max_iterations && is_met(state)) {
       const int number = result.iterations + 1;
       const JobStage step = stage.part(number * part, (number + 1) * part,
                                        message("Balancing cells, step ", number, " of ", options_.max_iterations));
-      State next = balanced(moved(state, step.part(0, 0.3)), step.part(0.3, 1));
+      State next = balanced(moved(state, step.part(0, 0.3)), step.part(0.3, 1), k_most_steps);
       const double energy = energy_of(next), before = result.energy.back();
       if (!is_met(next) || energy > before) {  // by rounding only, or a step that is too hard
         is_at_rest = is_met(next);
@@ -103,15 +113,37 @@ class Balancer {
     result.capacity_error = state.error;
     for (const RasterMoments& cell : state.cells) result.shares.push_back(cell.mass / whole_);
     result.sites = std::move(state.sites);
-    result.weights = std::move(state.weights);
-    const double mean =
-        std::accumulate(result.weights.begin(), result.weights.end(), 0.0) / static_cast<double>(result.weights.size());
-    for (double& weight : result.weights) weight -= mean;
+    result.weights = about_zero(std::move(state.weights));
+    stage.update(1);
+    return result;
+  }
+
+  AreaWeights weigh(std::span<const Vec2> sites, int most, const JobStage& stage) const {
+    AreaWeights result;
+    State state = filled({sites.begin(), sites.end()}, stage.part(0, 0.1));
+    result.lacks.push_back(state.missing / whole_);
+    state = balanced(std::move(state), stage.part(0.1, 1, "Weighing cells"), most, &result.lacks);
+    result.iterations = static_cast<int>(result.lacks.size()) - 1;
+    result.converged = is_met(state);
+    result.stop_reason = result.converged            ? "tolerance"
+                         : result.iterations == most ? "max_iterations"
+                                                     : "no step lowers what is missing";
+    result.error = state.error;
+    for (const RasterMoments& cell : state.cells) result.shares.push_back(cell.mass / whole_);
+    result.weights = about_zero(std::move(state.weights));
     stage.update(1);
     return result;
   }
 
  private:
+  static constexpr int k_most_steps = 60;
+
+  static std::vector<double> about_zero(std::vector<double> weights) {
+    const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
+    for (double& weight : weights) weight -= mean;
+    return weights;
+  }
+
   bool is_met(const State& state) const { return state.error <= options_.capacity_tolerance; }
 
   double energy_of(const State& state) const { return std::ldexp(scaled_energy(state), integral_.exponent()); }
@@ -137,8 +169,10 @@ class Balancer {
   State find(std::vector<Vec2> sites, std::vector<double> weights, const JobStage& stage) const {
     const int threads = options_.threads;
     State state{std::move(sites), std::move(weights), {}, {}};
-    state.diagram = power_diagram_2d(state.sites, state.weights, threads, stage.part(0, 0.6));
-    const ClippedCells clipped = state.diagram.clip(domain_, {.threads = threads}, stage.part(0.6, 0.9));
+    state.diagram = is_curved_ ? voronoi_2d(state.sites, state.weights, {.threads = threads}, stage.part(0, 0.6))
+                               : power_diagram_2d(state.sites, state.weights, threads, stage.part(0, 0.6));
+    const ClippedCells clipped =
+        state.diagram.clip(domain_, {.tolerance = curve_tolerance(), .threads = threads}, stage.part(0.6, 0.9));
     state.cells = moments_of(clipped, static_cast<Index>(state.sites.size()), integral_, threads, stage);
     state.least = whole_;
     for (std::size_t i = 0; i < state.sites.size(); ++i) {
@@ -150,6 +184,13 @@ class Balancer {
     state.missing = std::sqrt(state.missing);
     stage.update(1);
     return state;
+  }
+
+  // Of a polyline along a curved edge, so that polygons have the areas of their cells within the tolerance.
+  double curve_tolerance() const {
+    constexpr double k_share = 0.1;
+    return k_share * std::max(options_.capacity_tolerance, 1e-9) *
+           std::sqrt(domain_.area() / static_cast<double>(wanted_.size()));
   }
 
   // Sums from the raster's left side on leave a cell without density a mass of rounding.
@@ -203,10 +244,9 @@ class Balancer {
   }
 
   /// Finds the weights with which all capacities are met; as near as it gets where that is not to be had.
-  State balanced(State state, const JobStage& stage) const {
-    constexpr int k_most = 60;
+  State balanced(State state, const JobStage& stage, int most, std::vector<double>* lacks = nullptr) const {
     const double least = 0.5 * std::min(state.least, *std::min_element(wanted_.begin(), wanted_.end()));
-    for (int step = 0; step < k_most && !is_met(state) && least > 0; ++step) {
+    for (int step = 0; step < most && !is_met(state) && least > 0; ++step) {
       const JobStage part = stage.part(step / (step + 4.0), (step + 1) / (step + 5.0));
       // Where nothing lies between cells, Newton's step sees no way from one to the other: then as if a little did.
       std::optional<State> next;
@@ -216,6 +256,7 @@ class Balancer {
       }
       if (!next) break;
       state = std::move(*next);
+      if (lacks) lacks->push_back(state.missing / whole_);
     }
     stage.update(1);
     return state;
@@ -225,7 +266,7 @@ class Balancer {
   /// as its slope promises.
   std::optional<State> better(const State& state, const std::vector<double>& change, double least,
                               const JobStage& stage) const {
-    const double before = dual_energy(state);
+    const double before = is_curved_ ? 0 : dual_energy(state);
     double slope = 0;
     for (std::size_t i = 0; i < change.size(); ++i) slope += change[i] * (wanted_[i] - state.cells[i].mass);
     constexpr double k_promised = 1e-3, k_rounding = 1e-12;
@@ -236,9 +277,9 @@ class Balancer {
       for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += share * change[i];
       State next = find(state.sites, std::move(weights), stage);
       if (next.least < least) continue;
-      const double risen = dual_energy(next) - before;
+      const double risen = is_curved_ ? 0 : dual_energy(next) - before;
       if (next.missing <= (1 - 0.5 * share) * state.missing ||
-          (risen >= k_promised * share * slope && risen > k_rounding * std::fabs(before)))
+          (!is_curved_ && risen >= k_promised * share * slope && risen > k_rounding * std::fabs(before)))
         return next;
     }
     return std::nullopt;
@@ -255,10 +296,12 @@ class Balancer {
     std::vector<double> gain(edge_count, 0);
     parallel_for(edge_count, options_.threads, 256, [&](Index edge, int) {
       if (edge % 256 == 0) stage.check();
-      edges.for_parts(edge, [&](const Vec2& from, const Vec2& to) {
-        gain[edge] += integral_.mass_between(from, to) + added * (to - from).norm();
-      });
+      const auto length = [&](const Vec2& from, const Vec2& to) {
+        return integral_.mass_between(from, to) + added * (to - from).norm();
+      };
       const auto [left, right] = diagram.edge_sites[edge];
+      if (is_curved_) return void(gain[edge] = curve_gain(state, edge, edges, length));
+      edges.for_parts(edge, [&](const Vec2& from, const Vec2& to) { gain[edge] += length(from, to); });
       gain[edge] /= 2 * (state.sites[left] - state.sites[right]).norm();
     });
     SymmetricMatrix matrix;
@@ -297,8 +340,29 @@ class Balancer {
     return change;
   }
 
+  // Along a curve a cell gains the reciprocal of |u - v|, of the directions to the two sites, times what lies there.
+  template <class Length>
+  double curve_gain(const State& state, Index edge, const EdgesWithin& edges, const Length& length) const {
+    const auto [left, right] = state.diagram.edge_sites[edge];
+    const Vec2 &p = state.sites[left], &q = state.sites[right];
+    std::vector<Vec2> points;
+    constexpr double k_share = 1e-4;  // a slope that is near enough
+    const double width = std::sqrt(domain_.area() / static_cast<double>(wanted_.size()));
+    voronoi2d::add_edge_points(state.diagram, edge, k_share * width, 8 * edges.farthest(p, q), points);
+    double gain = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+      edges.for_parts(points[i], points[i + 1], [&](const Vec2& from, const Vec2& to) {
+        const Vec2 middle = 0.5 * from + 0.5 * to;
+        const double apart = ((middle - p).stableNormalized() - (middle - q).stableNormalized()).norm();
+        constexpr double k_least = 1e-9;  // behind a site, where directions are alike to rounding
+        gain += length(from, to) / std::max(apart, k_least);
+      });
+    return gain;
+  }
+
   const PlanarDomain& domain_;
   const Balance2dOptions& options_;
+  bool is_curved_;
   RasterIntegral integral_;
   DomainMap map_;
   double whole_ = 0;
@@ -311,7 +375,24 @@ Balance2d balance_2d(std::span<const Vec2> sites, const PlanarDomain& domain, co
                      Job* job) {
   check_options(sites, options);
   const JobStage stage(job, "Finding cells");
-  return Balancer(sites.size(), domain, options).run(sites, stage);
+  return Balancer(sites.size(), domain, options, Balancer::Cells::power).run(sites, stage);
+}
+
+AreaWeights weights_for_areas(std::span<const Vec2> sites, const PlanarDomain& domain,
+                              const AreaWeightsOptions& options, Job* job) {
+  if (sites.empty()) throw InputError("sites: wanted at least one site, got none");
+  if (options.max_iterations < 0)
+    throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
+  if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
+  voronoi2d::check_density(options.density);
+  check_capacities("areas", "area", options.areas, sites.size());
+  const Balance2dOptions all{.density = options.density,
+                             .capacities = options.areas,
+                             .max_iterations = 0,
+                             .capacity_tolerance = options.tolerance,
+                             .threads = options.threads};
+  const JobStage stage(job, "Finding cells");
+  return Balancer(sites.size(), domain, all, Balancer::Cells::curved).weigh(sites, options.max_iterations, stage);
 }
 
 }  // namespace saddleback

@@ -22,6 +22,8 @@ void check_options(std::span<const Vec2> sites, const Relaxation2dOptions& optio
     throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
   check_density(options.density);
+  if (!options.weights.empty() && options.weights.size() != sites.size())
+    throw InputError(message("weights: wanted one for each of ", sites.size(), " sites, got ", options.weights.size()));
 }
 
 /// Sites with what they need to know of their cells to move on.
@@ -31,9 +33,12 @@ struct State {
   double energy = 0;
 };
 
-State evaluate(std::vector<Vec2> sites, const PlanarDomain& domain, const RasterIntegral& integral, int threads,
-               const JobStage& stage) {
-  const Voronoi2d diagram = voronoi_2d(sites, {.threads = threads}, stage.part(0, 0.5));
+State evaluate(std::vector<Vec2> sites, const PlanarDomain& domain, const RasterIntegral& integral,
+               const Relaxation2dOptions& options, const JobStage& stage) {
+  const int threads = options.threads;
+  const Voronoi2d diagram = options.weights.empty()
+                                ? voronoi_2d(sites, {.threads = threads}, stage.part(0, 0.5))
+                                : voronoi_2d(sites, options.weights, {.threads = threads}, stage.part(0, 0.5));
   const ClippedCells cells = diagram.clip(domain, {.threads = threads}, stage.part(0.5, 0.8));
   State state{std::move(sites), {}, 0};
   state.moments = moments_of(cells, static_cast<Index>(state.sites.size()), integral, threads, stage);
@@ -55,6 +60,12 @@ std::vector<Vec2> moved_sites(const State& state, const RasterIntegral& integral
   return sites;
 }
 
+double largest_move(const std::vector<Vec2>& from, const std::vector<Vec2>& to) {
+  double largest = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) largest = std::max(largest, (to[i] - from[i]).norm());
+  return largest;
+}
+
 }  // namespace
 
 Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, const Relaxation2dOptions& options,
@@ -72,26 +83,29 @@ Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, c
   const double part = 1.0 / (options.max_iterations + 1);
   Relaxation2d result;
   result.stop_reason = "max_iterations";
+  const bool has_weights = !options.weights.empty();
+  const double rest = options.tolerance * std::sqrt(domain.area() / static_cast<double>(sites.size()));
   const auto tell_energy = [&](const State& of) {
     result.energy.push_back(std::ldexp(of.energy, 2 * integral.exponent()));
   };
-  State state = evaluate({sites.begin(), sites.end()}, domain, integral, options.threads, stage.part(0, part));
+  State state = evaluate({sites.begin(), sites.end()}, domain, integral, options, stage.part(0, part));
   tell_energy(state);
   while (result.iterations < options.max_iterations) {
     const JobStage step =
         stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
                    message("Relaxing sites, step ", result.iterations + 1, " of ", options.max_iterations));
-    State next = evaluate(moved_sites(state, integral, least_mass), domain, integral, options.threads, step);
-    if (next.energy > state.energy) {  // by rounding only
+    State next = evaluate(moved_sites(state, integral, least_mass), domain, integral, options, step);
+    if (!has_weights && next.energy > state.energy) {  // by rounding only
       result.converged = true;
       result.stop_reason = "no step lowers the energy";
       break;
     }
     const double fall = state.energy - next.energy;
+    const double move = has_weights ? largest_move(state.sites, next.sites) : 0;
     state = std::move(next);
     tell_energy(state);
     ++result.iterations;
-    if (fall <= options.tolerance * state.energy) {
+    if (has_weights ? move <= rest : fall <= options.tolerance * state.energy) {
       result.converged = true;
       result.stop_reason = "tolerance";
       break;

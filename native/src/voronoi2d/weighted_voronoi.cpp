@@ -131,8 +131,12 @@ bool all_equal(std::span<const double> weights) {
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options,
                      Job* job) {
+  return voronoi_2d(sites, weights, options, JobStage(job, "Weighted Voronoi diagram"));
+}
+
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options,
+                     const JobStage& stage) {
   check_options(options, sites.size());
-  const JobStage stage(job, "Weighted Voronoi diagram");
   if (weights.size() == sites.size() && all_equal(weights) && (weights.empty() || std::isfinite(weights[0])))
     return voronoi_2d(sites, options, stage);
   if (std::optional<Voronoi2d> found = found_on_device(sites, weights, options, stage)) return std::move(*found);

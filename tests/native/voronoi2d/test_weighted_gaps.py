@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,8 @@ HOLED = [SQUARE, [[0.3, 0.3], [0.6, 0.3], [0.5, 0.7]]]
 
 def loops_of(cells, site):
     return [
-        cells.points[cells.loop_offsets[k] : cells.loop_offsets[k + 1]] for k in np.flatnonzero(cells.loop_sites == site)
+        cells.points[cells.loop_offsets[k] : cells.loop_offsets[k + 1]]
+        for k in np.flatnonzero(cells.loop_sites == site)
     ]
 
 
@@ -51,7 +54,7 @@ def test_loops_are_a_gap_apart(domain):
 @pytest.mark.parametrize("heavier", [0, 1])
 @pytest.mark.parametrize("half", [0.01, 0.3, 1.0, 3.0])
 def test_both_sides_of_one_hyperbola(heavier, half):
-    """Foci at 1 and -1, |x - a| - |x - b| = 1: points beside it, by the branch x = -cosh t / 2, y = sqrt(3) / 2 sinh t."""
+    """Foci at 1 and -1, |x - a| - |x - b| = 1: points beside the branch x = -cosh t / 2, y = sqrt(3) / 2 sinh t."""
     sites, weights = np.array([[1.0, 0], [-1.0, 0]]), np.zeros(2)
     weights[heavier] = 1
     domain = 4 * np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
@@ -100,13 +103,13 @@ def test_every_kind_of_disks(kind, n):
     domain = low + side * (1.2 * np.array(SQUARE) - 0.1)
     diagram = sb.voronoi_2d(sites, weights)
     if kind in ("huge", "tiny"):
-        with pytest.raises(sb.InputError, match="wanted numbers up to|less than any number"):
+        with pytest.raises(sb.InputError, match=r"wanted numbers up to|less than any number"):
             diagram.clip(domain, gap=0.1 * side)
         return
     areas = [diagram.clip(domain, gap=share * side).areas for share in (0, 1e-9, 1e-2, 0.1, 0.5, 2.0)]
     mean = side * side * 1.44
     assert np.abs(areas[0] - areas[1]).max() <= 1e-3 * mean
-    for more, less in zip(areas, areas[1:], strict=False):
+    for more, less in pairwise(areas):
         assert (less <= more + 1e-3 * mean).all()
 
 

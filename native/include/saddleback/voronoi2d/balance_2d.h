@@ -46,4 +46,33 @@ struct Balance2d {
 Balance2d balance_2d(std::span<const Vec2> sites, const PlanarDomain& domain, const Balance2dOptions& options = {},
                      Job* job = nullptr);
 
+struct AreaWeightsOptions {
+  DensityRaster density;          ///< of the mass that stands for area; none: area itself
+  std::span<const double> areas;  ///< (n) in proportion; none: all alike
+  double tolerance = 1e-4;        ///< how far a cell's share may be from the wanted one, in shares of that
+  int max_iterations = 60;        ///< of Newton's method
+  int threads = 0;                ///< 0: all cores; the result does not depend on it
+};
+
+struct AreaWeights {
+  std::vector<double> weights;  ///< (n) of `voronoi_2d`; their mean is 0
+  std::vector<double> shares;   ///< (n) of the domain's area, or mass, in each cell
+  double error = 0;             ///< the largest of a cell's, in shares of the wanted one
+  std::vector<double> lacks;    ///< what cells lack or have too much, in shares of the whole, as the root of the sum of
+                                ///< squares: of equal weights and after each iteration; falls each time
+  int iterations = 0;
+  bool converged = false;  ///< true if the error is within the tolerance
+  std::string stop_reason;
+};
+
+/// Finds the weights with which the cells of the additively weighted diagram, within a domain, have given areas: those
+/// of optimal transport, whose cost is the distance. They are where a concave function, Kantorovich's, is largest; its
+/// slope is what the cells lack, its second derivatives are integrals of 1 / |u - v| along the borders, u and v being
+/// the directions to the two sites. Newton's steps are halved until no cell is lost and less is missing, as in
+/// `balance_2d` [kitagawa2019]. \throw InputError for no sites, a coordinate that is not finite, options out of range,
+/// a density that is negative, not finite or zero all over the domain, areas that are not positive, and for sites that
+/// have no mass without weights; Cancelled. A step costs O(n^1.5 + raster cells that borders of cells cross).
+AreaWeights weights_for_areas(std::span<const Vec2> sites, const PlanarDomain& domain,
+                              const AreaWeightsOptions& options = {}, Job* job = nullptr);
+
 }  // namespace saddleback

@@ -19,14 +19,16 @@ struct DensityRaster {
 
 struct Relaxation2dOptions {
   DensityRaster density;
+  std::span<const double> weights;  ///< (n) of the additively weighted diagram, which stay; none: all alike
   int max_iterations = 100;
-  double tolerance = 1e-6;  ///< stop when the energy falls by less than this share of itself
+  double tolerance = 1e-6;  ///< stop when the energy falls by less than this share of itself; with weights when no site
+                            ///< moves farther than this share of a mean cell's width
   int threads = 0;          ///< 0: all cores; the result does not depend on it
 };
 
 struct Relaxation2d {
   std::vector<Vec2> sites;
-  std::vector<double> energy;  ///< of the start and after each iteration; never rises
+  std::vector<double> energy;  ///< of the start and after each iteration; never rises without weights
   int iterations = 0;
   bool converged = false;
   std::string stop_reason;
@@ -40,6 +42,9 @@ struct Relaxation2d {
 /// over cells are exact: along their borders, row by row of the raster. \throw InputError for no sites, a coordinate
 /// that is not finite, options out of range, a density that is negative, not finite or zero all over the domain;
 /// Cancelled. Per iteration O(n log n + raster cells that borders of cells cross); O(rows * columns) memory.
+///
+/// With weights the cells are those of `voronoi_2d` with them, which are not the best for the energy: it is told, and
+/// may rise by little; what falls is how far sites are from the centers, though not in every step. Hidden sites stay.
 Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, const Relaxation2dOptions& options = {},
                       Job* job = nullptr);
 

@@ -120,5 +120,8 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
 /// not finite or a wrong number of weights. Cancelled. O(n log n) time expected for evenly spread sites, O(n) memory.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options = {},
                      Job* job = nullptr);
+/// Does the same as a part of other work.
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options,
+                     const JobStage& stage);
 
 }  // namespace saddleback

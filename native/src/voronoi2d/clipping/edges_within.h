@@ -35,7 +35,25 @@ class EdgesWithin {
       return vertex == k_none ? infinite : std::clamp((diagram_.vertices[vertex] - begin).dot(along), -reach_, reach_);
     };
     const double from = place(first, -reach_), to = place(second, reach_);
-    if (!(from < to)) return;
+    if (from < to) for_parts(begin, along, across, from, to, visit);
+  }
+
+  /// Does the same for the parts of a straight way between two points.
+  template <class Visit>
+  void for_parts(const Vec2& a, const Vec2& b, const Visit& visit) const {
+    const Vec2 along = (b - a).stableNormalized();
+    if (a != b) for_parts(a, along, Vec2(along.y(), -along.x()), 0, (b - a).dot(along), visit);
+  }
+
+  /// Returns more than the distance of two sites from any point of the domain.
+  double farthest(const Vec2& p, const Vec2& q) const {
+    return std::max((p - middle_).norm(), (q - middle_).norm()) + reach_;
+  }
+
+ private:
+  template <class Visit>
+  void for_parts(const Vec2& begin, const Vec2& along, const Vec2& across, double from, double to,
+                 const Visit& visit) const {
     const Vec2 a = begin + from * along, b = begin + to * along;
     const DomainMap::Place where = map_.place(a.cwiseMin(b), a.cwiseMax(b));
     if (where == DomainMap::Place::outside) return;
@@ -56,7 +74,6 @@ class EdgesWithin {
         visit(Vec2(begin + cuts[i] * along), Vec2(begin + cuts[i + 1] * along));
   }
 
- private:
   const Voronoi2d& diagram_;
   const PlanarDomain& domain_;
   const DomainMap& map_;
