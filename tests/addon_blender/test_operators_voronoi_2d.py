@@ -384,8 +384,6 @@ def test_sites_and_weights():
     select(bpy.context.object, [0, 1, 2])
     refused("no attribute 'size'", sites_source="SELECTED", weights_name="size")
     bpy.context.object.data.attributes.new("size", "FLOAT", "POINT")
-    refused("cannot be relaxed", sites_source="SELECTED", weights_name="size", iterations=3)
-    refused("have no gap", sites_source="SELECTED", weights_name="size", gap=0.1)
     refused("weights count on flat meshes only", sites_source="SELECTED", weights_name="size", space="DISK")
 
 

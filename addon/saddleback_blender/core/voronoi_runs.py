@@ -90,14 +90,8 @@ def _check(request: Voronoi2dRequest) -> None:
     settings, name = request.settings, request.surface.name
     if settings.animate and settings.space != "OUTLINE":
         raise BadInputError(f"'{name}': the sweep is shown on flat meshes only; switch Animate off, or choose Outline")
-    if request.weights is None:
-        return
-    if settings.space != "OUTLINE":
+    if request.weights is not None and settings.space != "OUTLINE":
         raise BadInputError(f"'{name}': weights count on flat meshes only; leave their name empty, or choose Outline")
-    if settings.iterations:
-        raise BadInputError(f"'{name}': sites with weights cannot be relaxed; set the iterations to 0")
-    if settings.make_cells and (settings.gap or settings.inset or settings.thickness):
-        raise BadInputError(f"'{name}': cells of sites with weights have no gap, bevel or thickness; set them to 0")
 
 
 def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sites:
@@ -154,7 +148,7 @@ def _relaxed(
     with progress.stage(0.7, "relaxing the sites") as job:
         relaxed = native.load().relax_2d(
             sites.places, space.loops, density, max_iterations=settings.iterations, tolerance=0.0,
-            threads=request.threads, job=job,
+            weights=request.weights, threads=request.threads, job=job,
         )  # fmt: skip
     return sites.moved(space, relaxed.sites)
 

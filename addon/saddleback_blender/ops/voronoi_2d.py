@@ -54,9 +54,6 @@ class PlaneOperator(SurfaceOperator):
             steps = settings.iterations if _moves(settings) else 0
             settings = replace(settings, space=_space(surface, mesh, settings), iterations=steps)
             sized = self.measured(settings, surface, settings.count if sites is None else len(sites))
-            if weights is not None and settings.lengths == "RELATIVE":  # such cells can have none of these
-                self._lengths |= {"gap": 0.0, "inset": 0.0, "thickness": 0.0}
-                sized = replace(sized, **self._lengths)
             request = Voronoi2dRequest(
                 surface=surface,
                 settings=sized,
