@@ -66,7 +66,7 @@ def test_instances_stand_where_bent_copies_lie():
     item = host()
     item.location, item.rotation_euler, item.scale = (1, 2, 3), (0.3, 0.4, 0.5), (2, 2, 2)
     bpy.context.view_layer.update()
-    bpy.ops.saddleback.distribute(make_instances=True, **FEW)
+    bpy.ops.saddleback.distribute(make_instances=True, fit=0.0, **FEW)
     bent, points = find_output(item, "shapes"), find_output(item, "shape instances")
     matrix = np.array(bent.matrix_world)
     world = np.array([vertex.co for vertex in bent.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]

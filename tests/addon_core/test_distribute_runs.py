@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes on a surface as the add-on asks for them: counts, sizes, fields, what is made of the placements."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from saddleback_blender.core import distribute_runs, distribute_texts, runs
+from saddleback_blender.core import distribute_runs, distribute_texts, native, runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from saddleback_blender.core.settings import DirectionFieldSettings, DistributeSettings
 from saddleback_blender.core.shapes.shape_presets import preset
-from saddleback_blender.core.shapes.shape_templates import fitted
+from saddleback_blender.core.shapes.shape_templates import fans, fitted
 from saddleback_blender.core.surfaces.quaternions import turned
 from tests import meshes
 
@@ -243,3 +244,39 @@ def test_a_count_that_leaves_a_part_bare_is_told():
     result = run(preset("STUDS"), packing=1.0, size=0.1, make_bent=False)
     assert len(result.placed.shape) == 60 and "what they did not reach is bare" in result.warnings[0]
     assert not run(preset("STUDS"), packing=0.0, size=0.1, make_bent=False).warnings
+
+
+def passing_pairs(result):
+    """Pairs of copies that pass through each other, by exact tests of all their triangles."""
+    bent = result.bent
+    owner = np.repeat(bent.polygon_copy, np.diff(bent.offsets) - 2)
+    found = owner[native.load().self_crossings(bent.vertices, bent.corners[fans(bent.offsets)])]
+    return {tuple(sorted(pair)) for pair in found.tolist() if pair[0] != pair[1]}
+
+
+@pytest.mark.parametrize("shapes", ["SCALES", "LEAVES"])
+def test_shapes_that_overlap_pass_through_none_if_asked(shapes):
+    options = {"count": 120, "packing": 1.0, "overlap": 0.6, "fit": 0.04}
+    plain = run(preset(shapes), **options)
+    clear = run(preset(shapes), no_crossings=True, **options)
+    assert len(passing_pairs(plain)) > 10 and not passing_pairs(clear)
+    assert re.fullmatch(r"\d+ shapes are drawn smaller, not to pass through others", clear.lines[-1])
+    assert not clear.warnings and "smaller" not in " ".join(plain.lines)
+    assert len(set(clear.bent.polygon_copy)) == clear.class_counts.sum()
+
+
+def test_shapes_that_pass_through_others_at_any_size_are_missing_and_told():
+    vertices, triangles = meshes.grid(12)
+    twice = np.concatenate([vertices, vertices + (0.0, 0.0, 1e-7)])
+    result = run(
+        arrays=(twice, np.concatenate([triangles, triangles + len(vertices)])), count=80, overlap=0.5, no_crossings=True
+    )
+    missing = result.class_counts.sum() - len(set(result.bent.polygon_copy))
+    assert missing > 0 and not passing_pairs(result)
+    assert f"{missing} shapes are missing that would pass through others at any size" in result.warnings[-1]
+
+
+def test_counts_of_shapes_are_told_in_one_sentence_or_none():
+    assert distribute_texts.made_smaller(0) == () == distribute_texts.left_out(0)
+    assert distribute_texts.made_smaller(1) == ("1 shape is drawn smaller, not to pass through others",)
+    assert distribute_texts.left_out(1)[0].startswith("1 shape is missing")

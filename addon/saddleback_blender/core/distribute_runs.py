@@ -14,7 +14,18 @@ from . import cache as cache_module
 from . import native
 from .cache import Cache
 from .density_runs import density_of
-from .distribute_texts import MOST_FAULTS, fault, figures, no_room, refusal, told, too_small, warnings_of
+from .distribute_texts import (
+    MOST_FAULTS,
+    fault,
+    figures,
+    left_out,
+    made_smaller,
+    no_room,
+    refusal,
+    told,
+    too_small,
+    warnings_of,
+)
 from .errors import BadInputError
 from .field_runs import MadeField, field_of
 from .fields.given_fields import given_field
@@ -25,7 +36,7 @@ from .results import CheckResult, DistributeResult, Indices, PathsResult, Placed
 from .settings import DistributeSettings
 from .shapes.bent_copies import bent_copies
 from .shapes.cut_shapes import cut_shapes
-from .shapes.overlapping import footprints, map_whole, tilted, tilted_frames
+from .shapes.overlapping import ROUND, THIN, Order, Whole, footprints, map_whole, tilted, tilted_frames
 from .shapes.shape_classes import class_densities, class_fields, class_sizes, kept_placements
 from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
 from .shapes.shape_templates import ShapeTemplate, sized, uv_of_classes
@@ -45,10 +56,11 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     laid = laid_of(request, progress, cache)
     mesh, result = laid.mesh, laid.result
     mapped = _mapped(laid, request, progress, cache)
-    drawn, templates = _drawn(laid, mapped, request, progress, cache)
+    whole, templates = _drawn(laid, mapped, request, progress, cache)
+    drawn = whole.mapped
     bent = outlines = values = None
     if settings.make_bent:
-        bent = bent_copies(mesh, drawn, templates, settings, request.threads, progress)
+        bent = bent_copies(mesh, drawn, templates, settings, request.threads, progress, whole.left_out)
     bent_anchors = outline_anchors = None
     triangles = np.asarray(mesh.triangles)
     if bent is not None and settings.follow_surface:
@@ -95,8 +107,8 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         vertex_count=surface.vertex_count,
         class_counts=counts,
         text=told(laid, counts, settings),
-        lines=figures(laid, settings.maximal),
-        warnings=(*laid.warnings, *warnings_of(laid, mapped, settings)),
+        lines=(*figures(laid, settings.maximal), *made_smaller(whole.smaller)),
+        warnings=(*laid.warnings, *warnings_of(laid, mapped, settings), *left_out(len(whole.left_out))),
         bent=bent,
         bent_anchors=bent_anchors,
         outlines=outlines,
@@ -117,7 +129,7 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     overlap = _overlap(settings, templates)
     if settings.overlap > overlap:
         progress.note("Shapes without a mesh do not overlap")
-    parts = [footprints(template.parts, overlap) for template in templates]
+    parts = [footprints(template.parts, overlap, THIN if settings.no_crossings else ROUND) for template in templates]
     shapes = [sb.Shape(*[list(part) for part in outlines]) for outlines in parts]
     field = _field(request, mesh, progress, cache)
     bends = settings.bend and not settings.maximal
@@ -216,21 +228,27 @@ def _overlap(settings: DistributeSettings, templates: Sequence[ShapeTemplate]) -
 
 def _drawn(
     laid: Laid, mapped: Any, request: DistributeRequest, progress: Progress, cache: Cache
-) -> tuple[Any, Sequence[ShapeTemplate]]:
+) -> tuple[Whole, Sequence[ShapeTemplate]]:
     """The shapes as they are shown, and where: those that were laid, unless they overlap."""
-    overlap = _overlap(request.settings, laid.templates)
+    settings = request.settings
+    overlap = _overlap(settings, laid.templates)
     if overlap == 0.0:
-        return mapped, laid.templates
+        return Whole(mapped), laid.templates
+    clears = settings.no_crossings
+    templates = [tilted(template, settings.tilt, THIN if clears else ROUND) for template in laid.templates]
     shapes = [native.load().Shape(*[list(part) for part in template.parts]) for template in laid.templates]
+    solids = [template.solid for template in templates]
+    order = Order(
+        laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.threads
+    )  # fmt: skip
 
-    def lay() -> Any:
+    def lay() -> Whole:
         with progress.stage(0.9, "laying shapes over each other") as job:
-            return map_whole(
-                laid.mesh, shapes, laid.result.placements, laid.result.field, overlap, request.threads, job
-            )
+            return map_whole(order, overlap, clears and settings.make_bent, job)
 
-    whole = cache.get(("overlapping shapes", *laid.key), lay, lambda found: BYTES_PER_SHAPE * len(found))
-    return whole, [tilted(template, request.settings.tilt) for template in laid.templates]
+    drawn = content_of([settings.fit, clears and settings.make_bent, [solid.vertices for solid in solids if solid]])
+    key = ("overlapping shapes", *laid.key, drawn)
+    return cache.get(key, lay, lambda found: BYTES_PER_SHAPE * len(found.mapped)), templates
 
 
 def _field(request: DistributeRequest, mesh: Any, progress: Progress, cache: Cache) -> MadeField | None:

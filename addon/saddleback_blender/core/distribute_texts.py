@@ -91,6 +91,18 @@ def warnings_of(laid: Laid, mapped: Any, settings: DistributeSettings) -> tuple[
     return tuple(found)
 
 
+def made_smaller(count: int) -> tuple[str, ...]:
+    """Tells how many shapes that overlap were drawn smaller, if any."""
+    are = "1 shape is" if count == 1 else f"{count:,} shapes are"
+    return (f"{are} drawn smaller, not to pass through others",) if count else ()
+
+
+def left_out(count: int) -> tuple[str, ...]:
+    """Warns of shapes that would pass through others however small they were, if any."""
+    are = "1 shape is" if count == 1 else f"{count:,} shapes are"
+    return (f"{are} missing that would pass through others at any size, where the surface does",) if count else ()
+
+
 def no_room(laid: Laid) -> str:
     """Says why not one shape is there, and what to do."""
     causes = _causes(laid)

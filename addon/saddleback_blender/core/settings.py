@@ -287,6 +287,7 @@ class DistributeSettings(DensitySettings, PatternSettings):
     gap_share: float = 0.0
     overlap: float = 0.0  # share of their length by which shapes reach over those before them
     tilt: float = math.radians(14.0)  # of shapes that overlap: how steeply they rise to their tips
+    no_crossings: bool = False  # shapes that overlap are drawn so that none passes through another
     packing: float = 1.0  # 0 = by chance, 1 = side by side
     maximal: bool = False  # go on until nothing more fits, whatever the count
     mirror: bool = False  # half of them

@@ -67,7 +67,11 @@ LOOKS: dict[str, Look] = {
     ),
     "SCALES": Look(
         "Scales", "Scales that overlap along the strokes, like those of a fish or a roof's tiles", "MOD_FLUID",
-        "distribute", {"shapes": "SCALES", "count": 700, "overlap": 0.6, "tilt": math.radians(14.0), "fit": 0.04},
+        "distribute",
+        {
+            "shapes": "SCALES", "count": 700, "overlap": 0.65, "tilt": math.radians(14.0), "no_crossings": True,
+            "fit": 0.04,
+        },
         Finish("Scales", ("#2a6d5c", "#1f5a4e", "#3b8266", "#184741", "#57926a"), 0.3, coat=0.5),
         ground="#12302a",
     ),

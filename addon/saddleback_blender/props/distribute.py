@@ -62,6 +62,10 @@ DISTRIBUTE: dict[str, Any] = {
         default=math.radians(14.0), min=0.0, max=math.radians(80.0), soft_max=math.radians(45.0), subtype="ANGLE",
         options={"SKIP_SAVE"},
     ),
+    "no_crossings": switch(
+        "No Crossings", "Draw shapes that overlap flatter and narrower, and smaller where they would still "
+        "pass through others", False,
+    ),
     "packing": FloatProperty(
         name="Packing", description="0 scatters shapes by chance, 1 lays them side by side, which makes room for more",
         default=1.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},

@@ -360,6 +360,9 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
 
 def draw_shapes_advanced(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Draws how shapes lie and turn in detail."""
+    row = layout.row()
+    row.active = settings.overlap > 0.0
+    row.prop(settings, "no_crossings")
     layout.prop(settings, "maximal")
     layout.prop(settings, "mirror")
     row = layout.row()

@@ -21,19 +21,20 @@ THICKNESS = 0.12  # of a shape's radius: of raised pieces of surface, where none
 
 def bent_copies(
     mesh: Any, mapped: Any, templates: Sequence[ShapeTemplate], settings: DistributeSettings, threads: int,
-    progress: Progress,
+    progress: Progress, without: Sequence[int] = (),
 ) -> BentCopies:  # fmt: skip
-    """One copy for each placement that could be laid, those with a solid first."""
+    """One copy for each placement that could be laid, those with a solid first; none of those `without`."""
     shapes, scales, mirrored = (
         mapped.placements.shape.tolist(), mapped.placements.scale, mapped.placements.mirrored
     )  # fmt: skip
     pieces = []
     with progress.stage(0.95, "bending shapes onto the surface") as job:
-        solids = [_triangulated(template.solid) for template in templates]
+        solids = [triangulated(template.solid) for template in templates]
         bent = mapped.bend(solids, settings.fit, threads=threads, job=job)
     for shape, template in enumerate(templates):
         if template.solid is not None:
-            pieces.append(_of_solid(bent, mapped, template.solid, shape))
+            copies = np.flatnonzero((mapped.placements.shape == shape) & (np.diff(bent.begins) > 0))
+            pieces.append(_of_solid(bent, mapped, template.solid, shape, np.setdiff1d(copies, without)))
     for number, shape in enumerate(shapes):
         if number % 32 == 0:
             progress.check()
@@ -43,7 +44,8 @@ def bent_copies(
     return _joined(pieces)
 
 
-def _triangulated(solid: Solid | None) -> tuple[Reals, Indices] | None:
+def triangulated(solid: Solid | None) -> tuple[Reals, Indices] | None:
+    """Vertices and triangles of a solid, as the library bends them."""
     return None if solid is None else (solid.vertices, solid.corners[solid.parted()])
 
 
@@ -89,11 +91,10 @@ def _row(parts: list[Any], dtype: type[np.generic]) -> Any:
     return (np.concatenate(parts) if parts else np.empty(0)).astype(dtype)
 
 
-def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int) -> _Piece:
-    """All copies of a class: polygons as they were where nothing of them was divided, else triangles."""
+def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int, copies: NDArray[np.int64]) -> _Piece:
+    """Copies of a class: polygons as they were where nothing of them was divided, else triangles."""
     parted = solid.parted()
     polygon = (np.searchsorted(solid.offsets, parted[:, 0], "right") - 1).astype(np.int32)
-    copies = np.flatnonzero((mapped.placements.shape == shape) & (np.diff(bent.begins) > 0))
     begins, ends = bent.begins[copies], bent.begins[copies + 1]
     used = np.concatenate([np.arange(b, e) for b, e in zip(begins, ends, strict=True)] or [np.empty(0, np.int64)])
     order = np.zeros(len(bent.vertices), np.int64)  # of a vertex among those used

@@ -1,35 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes that overlap like scales: laid by footprints that touch no other, drawn longer, rising from root to tip.
 
-A footprint is the shape made shorter along the field, and a little narrower, so that the tips of those behind reach
-over it.
+A footprint is the shape made shorter along the field, and a hair narrower, so that the tips of those behind reach over
+it. Shapes side by side rise alike: what they share of their sides they would pass through, so they share hardly any.
+Where shapes still pass through each other, since the surface bends or the field turns, one of them is drawn smaller.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import native
 from ..results import Indices, Reals
+from ..solids.crossings import find_crossings
 from ..surfaces.quaternions import quaternions_of, turned
+from .bent_copies import border, triangulated
 from .shape_templates import Parts, ShapeTemplate, Solid
 
-SIDEWAYS = 1.0 / 6.0  # of the overlap along the field: how much shapes overlap across it
-FLATTER = 0.5  # by which shapes of ours are flatter where they overlap, which brings the tip of one clear of the next
+
+class Slim(NamedTuple):
+    """How much shapes of ours give up where they overlap."""
+
+    sideways: float  # of the overlap along the field: how much shapes overlap across it
+    flatter: float  # how thick they are: flat, the tip of one comes clear of the next
+
+
+ROUND, THIN = Slim(1.0 / 6.0, 0.5), Slim(0.05, 0.3)
 SHRINK = 0.85  # a shape that the surface bends too much for is drawn smaller by this, once, twice, ...
+CLEARER = 0.9  # one that passes through others by this
+LEAST = 0.1  # of their size: smaller ones that still pass through others are left out
 
 
-def footprints(parts: Parts, overlap: float) -> Parts:
+def footprints(parts: Parts, overlap: float, slim: Slim) -> Parts:
     """The outlines that are laid without touching each other."""
-    shorter = np.array([1.0 - overlap, 1.0 - SIDEWAYS * overlap])
+    shorter = np.array([1.0 - overlap, 1.0 - slim.sideways * overlap])
     return tuple(tuple(loop * shorter for loop in part) for part in parts)
 
 
-def tilted(template: ShapeTemplate, tilt: float) -> ShapeTemplate:
+def tilted(template: ShapeTemplate, tilt: float, slim: Slim) -> ShapeTemplate:
     """The template with its solid rising along x by an angle (radians), its root where it was.
 
     One of ours is flatter and closed from below, since its tip stands free.
@@ -37,49 +50,151 @@ def tilted(template: ShapeTemplate, tilt: float) -> ShapeTemplate:
     solid = template.solid
     if solid is None:
         return template
+    if not template.source:
+        solid = _closed(replace(solid, vertices=solid.vertices * (1.0, 1.0, slim.flatter)))
     x = solid.vertices[:, 0]
-    flat = 1.0 if template.source else FLATTER
     rise = np.column_stack([0.0 * x, 0.0 * x, (x - x.min()) * np.tan(tilt)])
-    solid = replace(solid, vertices=solid.vertices * (1.0, 1.0, flat) + rise)
-    return replace(template, solid=solid if template.source else _closed(solid))
+    return replace(template, solid=replace(solid, vertices=solid.vertices + rise))
 
 
 def _closed(solid: Solid) -> Solid:
-    """With a fan below the border, about the middle of that."""
+    """With an underside in its plane, of the same faces, so that the two bend alike."""
     parted = solid.corners[solid.parted()]
-    begin, end = parted.ravel(), np.roll(parted, -1, axis=1).ravel()
+    begin, _ = border(parted)
     size = len(solid.vertices)
-    lone = ~np.isin(begin.astype(np.int64) * size + end, end.astype(np.int64) * size + begin)
-    begin, end = begin[lone], end[lone]
-    fan = np.stack([end, begin, np.full(len(begin), size)], axis=1).astype(np.int32)
+    is_inner = np.ones(size, bool)
+    is_inner[begin] = False
+    below = np.arange(size)
+    below[is_inner] = size + np.arange(np.count_nonzero(is_inner))
     return Solid(
-        vertices=np.concatenate([solid.vertices, solid.vertices[begin].mean(axis=0)[None]]),
-        corners=np.concatenate([solid.corners, fan.ravel()]),
-        offsets=np.append(solid.offsets, solid.offsets[-1] + 3 * np.arange(1, len(fan) + 1)).astype(np.int32),
-        uv=np.concatenate([solid.uv, np.full((3 * len(fan), 2), 0.5)]),
-        smooth=np.append(solid.smooth, np.zeros(len(fan), bool)),
-        material=np.append(solid.material, np.zeros(len(fan), np.int32)),
+        vertices=np.concatenate([solid.vertices, solid.vertices[is_inner] * (1.0, 1.0, 0.0)]),
+        corners=np.concatenate([solid.corners, below[parted[:, ::-1]].ravel()]).astype(np.int32),
+        offsets=np.append(solid.offsets, solid.offsets[-1] + 3 * np.arange(1, len(parted) + 1)).astype(np.int32),
+        uv=np.concatenate([solid.uv, solid.uv[solid.parted()[:, ::-1]].reshape(-1, 2)]),
+        smooth=np.append(solid.smooth, np.ones(len(parted), bool)),
+        material=np.append(solid.material, np.zeros(len(parted), np.int32)),
     )
 
 
-def map_whole(
-    mesh: Any, shapes: Sequence[Any], placements: Any, field: Any, overlap: float, threads: int, job: Any
-) -> Any:
+@dataclass(frozen=True)
+class Order:
+    """What is drawn: shapes, one of them at each place of a field, and their solids, bent as closely as `fit` says."""
+
+    mesh: Any
+    shapes: Sequence[Any]
+    solids: Sequence[Solid | None]
+    placements: Any
+    field: Any
+    fit: float
+    threads: int
+
+    def map(self, factor: Reals, chosen: NDArray[np.int64], job: Any) -> Any:
+        """Maps those chosen, each smaller by its factor."""
+        sb, all_of = native.load(), self.placements
+        center = sb.SurfacePoints(all_of.center.faces[chosen], all_of.center.barycentric[chosen])
+        scaled = sb.Placements(
+            all_of.shape[chosen], center, all_of.angle[chosen], factor[chosen] * all_of.scale[chosen],
+            all_of.mirrored[chosen],
+        )  # fmt: skip
+        return sb.map_shapes(self.mesh, self.shapes, scaled, self.field, threads=self.threads, job=job)
+
+    def bend(self, mapped: Any, job: Any) -> Any:
+        """Bends the solids of what was mapped."""
+        return mapped.bend([triangulated(solid) for solid in self.solids], self.fit, threads=self.threads, job=job)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Whole shapes as mapped, and how many were drawn smaller, and were left out, to be clear of others."""
+
+    mapped: Any
+    smaller: int = 0
+    left_out: tuple[int, ...] = ()
+
+
+def map_whole(order: Order, overlap: float, clears: bool, job: Any) -> Whole:
     """Maps the whole shapes where their footprints were laid, smaller where the surface bends too much for them.
 
-    At (1 - overlap) of its size a shape lies within its footprint, which has found its place.
+    At (1 - overlap) of its size a shape lies within its footprint, which has found its place. Where it `clears` them,
+    no bent copy of one passes through that of another.
     """
-    sb = native.load()
-    factor, least = np.ones(len(placements)), 1.0 - overlap
+    everything, least = np.arange(len(order.placements)), 1.0 - overlap
+    factor = np.ones(len(everything))
     while True:
-        scaled = sb.Placements(
-            placements.shape, placements.center, placements.angle, factor * placements.scale, placements.mirrored
-        )
-        mapped = sb.map_shapes(mesh, shapes, scaled, field, threads=threads, job=job)
+        mapped = order.map(factor, everything, job)
         failed = np.array([number for number in mapped.failures if factor[number] > least], np.int64)
         if not len(failed):
-            return mapped
+            break
         factor[failed] = np.maximum(SHRINK * factor[failed], least)
+    if not clears:
+        return Whole(mapped)
+    clear = _cleared(order, mapped, factor, job)
+    is_smaller, is_out = clear < factor, clear < LEAST
+    if is_smaller.any():
+        mapped = order.map(clear, everything, job)
+    return Whole(mapped, int(np.count_nonzero(is_smaller & ~is_out)), tuple(np.flatnonzero(is_out).tolist()))
+
+
+def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
+    """(n,) factors at which no copy passes through another; below LEAST it is to be left out.
+
+    Of each two that do, the one that meets more others, or else the larger, is made smaller. O(T log T) for all T
+    triangles once, then for those of the copies that change and of their neighbors.
+    """
+    factor = factor.copy()
+    bent = order.bend(mapped, job)
+    points, triangles, owner = bent.vertices, bent.triangles, bent.triangle_copy
+    middle = np.asarray(order.placements.center.positions(order.mesh))
+    reach = np.zeros(len(factor))
+    np.maximum.at(
+        reach, np.repeat(owner, 3), np.linalg.norm(points[triangles.ravel()] - middle[np.repeat(owner, 3)], axis=1)
+    )
+    pairs = _pairs(points, triangles, owner, None, job)
+    while len(pairs):
+        chosen = _fewest(pairs, factor)
+        factor[chosen] *= CLEARER
+        pairs = pairs[~np.isin(pairs, chosen).any(axis=1)]
+        is_kept = ~np.isin(owner, chosen)
+        triangles, owner = triangles[is_kept], owner[is_kept]
+        chosen = chosen[factor[chosen] >= LEAST]
+        bent = order.bend(order.map(factor, chosen, job), job)
+        near = _near(middle, reach, chosen)[owner]
+        around, fresh = triangles[near], bent.triangles + np.int32(len(points))
+        points = np.concatenate([points, bent.vertices])
+        found = _pairs(
+            points, np.concatenate([around, fresh]), np.concatenate([owner[near], chosen[bent.triangle_copy]]),
+            np.arange(len(around), len(around) + len(fresh), dtype=np.int32), job,
+        )  # fmt: skip
+        pairs = np.concatenate([pairs, found])
+        triangles, owner = np.concatenate([triangles, fresh]), np.concatenate([owner, chosen[bent.triangle_copy]])
+    return factor
+
+
+def _pairs(points: Reals, triangles: Indices, owner: Indices, among: Indices | None, job: Any) -> NDArray[np.int64]:
+    """(k, 2) copies that pass through each other, given whose each triangle is; of those `among` the triangles only."""
+    used, corners = np.unique(triangles, return_inverse=True)
+    found = find_crossings(points[used], corners.reshape(-1, 3).astype(np.int32), among, job)
+    owners = np.sort(owner[found].astype(np.int64), axis=1)
+    pairs: NDArray[np.int64] = np.unique(owners[owners[:, 0] != owners[:, 1]], axis=0)
+    return pairs
+
+
+def _near(middle: Reals, reach: Reals, chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """(n,) which copies may meet those chosen, given their middles and how far they reach from there."""
+    near = np.zeros(len(middle), bool)
+    for number in chosen:
+        near |= np.linalg.norm(middle - middle[number], axis=1) <= reach + reach[number]
+    return near
+
+
+def _fewest(pairs: NDArray[np.int64], factor: Reals) -> NDArray[np.int64]:
+    """Some of those in pairs (k, 2), one of each pair at least: always the one in most pairs next, then the largest."""
+    found = []
+    while len(pairs):
+        number, count = np.unique(pairs, return_counts=True)
+        found.append(number[np.lexsort((-factor[number], -count))[0]])
+        pairs = pairs[(pairs != found[-1]).all(axis=1)]
+    return np.sort(np.array(found, np.int64))
 
 
 def tilted_frames(

@@ -18,7 +18,7 @@ def _scales() -> list[ShapeTemplate]:
     """A shield with a keel that rises towards its tip, which points along the field."""
     half = np.array([(1.0, 0.0), (0.86, 0.2), (0.58, 0.46), (0.2, 0.62), (-0.3, 0.62), (-0.66, 0.5), (-0.84, 0.26)])
     outline = _smooth(np.concatenate([half, [(-0.9, 0.0)], half[:0:-1] * (1, -1)]))
-    solid = _pillow(outline, 0.17)
+    solid = _pillow(outline, 0.17, 6)
     x, y, z = solid.vertices.T
     # Of places, not of directions from the middle, where those would leave a knob.
     lift = 0.55 + 0.45 * (x - x.min()) / np.ptp(x)
@@ -43,7 +43,7 @@ def _feathers() -> list[ShapeTemplate]:
     vane = np.column_stack([0.87 * x + 0.13, 0.27 * (1 - x**2) ** 0.5 * (0.9 + 0.22 * x - 0.12 * x**2)])
     half = np.concatenate([root, vane[vane[:, 0] > -0.72]])  # wider than the quill: all is seen from the middle
     outline = np.concatenate([half * (1, -1), [(1.0, 0.0)], half[::-1]])
-    solid = _pillow(outline, 0.05)
+    solid = _pillow(outline, 0.05, 5)
     along, across = solid.vertices[:, 0], np.abs(solid.vertices[:, 1])
     inside = solid.vertices[:, 2] > 0
     quill = 0.055 * np.exp(-((across / 0.03) ** 2)) * np.clip(1.1 - np.abs(along), 0, 1)
@@ -83,11 +83,9 @@ def _mosaic() -> list[ShapeTemplate]:
 
 
 def _smooth(outline: Reals) -> Reals:
-    """Twice as many corners, four times over, by corner cutting: a closed curve near the polygon."""
-    for _ in range(2):
-        onward = np.roll(outline, -1, axis=0)
-        outline = np.stack([0.75 * outline + 0.25 * onward, 0.25 * outline + 0.75 * onward], axis=1).reshape(-1, 2)
-    return outline
+    """Twice as many corners, by corner cutting: a closed curve near the polygon."""
+    onward = np.roll(outline, -1, axis=0)
+    return np.stack([0.75 * outline + 0.25 * onward, 0.25 * outline + 0.75 * onward], axis=1).reshape(-1, 2)
 
 
 def _along(outline: Reals, step: float) -> Reals:
@@ -99,9 +97,9 @@ def _along(outline: Reals, step: float) -> Reals:
     return np.concatenate(pieces)
 
 
-def _pillow(outline: Reals, height: float) -> Solid:
-    """A low wall, then a round back."""
-    slope = np.linspace(0.0, 1.0, 9)
+def _pillow(outline: Reals, height: float, steps: int = 9) -> Solid:
+    """A low wall, then a round back in so many steps."""
+    slope = np.linspace(0.0, 1.0, steps)
     levels = np.concatenate([[1.0], 1.0 - 0.97 * slope])
     heights = height * np.concatenate([[0.0], 0.35 + 0.65 * np.sqrt(1 - (1 - slope) ** 2)])
     return dome(outline, levels, heights)
