@@ -434,3 +434,54 @@ def test_an_object_takes_the_place_of_dots():
     centers = find_output(item, "voronoi centers")
     assert nodes.modifier_of(centers, nodes.DOTS) is None and len(dots_of(centers)[0]) == 20
     assert np.abs(positions(centers.data)[:, 2]).max() < 1e-6
+
+
+@pytest.mark.parametrize("iterations", [0, 10])
+def test_equal_cells_have_one_area(iterations):
+    item = frame_with_hole()
+    bpy.ops.saddleback.voronoi_2d(count=60, iterations=iterations, equal_cells=True, make_edges=True)
+    cells, areas = faces(find_output(item, CELLS))
+    each = np.bincount(cells, areas, minlength=60)
+    assert np.abs(each - 8 / 60).max() < 1e-4
+    bpy.ops.saddleback.voronoi_2d(count=60, iterations=iterations)
+    assert np.bincount(*faces(find_output(item, CELLS))).std() > 0.01
+
+
+def test_equal_cells_are_equal_on_the_surface_through_a_map():
+    item = unwrapped_cylinder()
+    layer = item.data.uv_layers["Cut"]
+    for loop in layer.data:  # one half of the map holds a quarter of the surface
+        loop.uv[1] = loop.uv[1] ** 2
+    bpy.ops.saddleback.voronoi_2d(space="UV", count=40, iterations=5, equal_cells=True)
+    cells, areas = faces(find_output(item, CELLS))
+    each = np.bincount(cells, areas, minlength=40)
+    assert np.abs(each / each.mean() - 1).max() < 0.05  # of the map's stretch by 512 rectangles each way
+    bpy.ops.saddleback.voronoi_2d(space="UV", count=40, iterations=0)
+    cells, areas = faces(find_output(item, CELLS))
+    assert np.ptp(np.bincount(cells, areas, minlength=40)) > 0.3 * each.mean()
+
+
+def test_equal_cells_of_an_image_have_one_share_of_its_tone():
+    item = grid()
+    half = image("Half", np.repeat([[0.2] * 32 + [0.8] * 32], 64, axis=0))
+    bpy.ops.saddleback.voronoi_2d(
+        sites_source="IMAGE", image_name=half.name, count=100, iterations=10, equal_cells=True, make_centers=True
+    )
+    cells, areas = faces(find_output(item, CELLS))
+    sites = positions(find_output(item, CENTERS).data)
+    middle = 0.5 * (sites[:, 0].min() + sites[:, 0].max())
+    each = np.bincount(cells, areas, minlength=100)
+    dark, light = each[sites[:, 0] < middle - 0.1], each[sites[:, 0] > middle + 0.1]
+    assert light.mean() / dark.mean() == pytest.approx(4, rel=0.1)  # of 0.8 and 0.2 of ink
+
+
+def test_equal_cells_say_what_they_do_not_go_with():
+    item = grid()
+    for settings, sentence in (
+        ({"animate": True}, "the sweep shows cells of any size; switch Animate off, or Equal Cells"),
+        ({"sites_source": "SELECTED", "weights_name": "heavy"}, "cells are as large as the weights say"),
+    ):
+        item.data.attributes.get("heavy") or item.data.attributes.new("heavy", "FLOAT", "POINT")
+        select(item, [0, 3, 7])
+        with pytest.raises(RuntimeError, match=sentence):
+            bpy.ops.saddleback.voronoi_2d(equal_cells=True, **settings)

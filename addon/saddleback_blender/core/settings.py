@@ -211,6 +211,7 @@ class Voronoi2dSettings(RegionSettings):
     weights_name: str = ""  # attribute of the vertices that are sites; "" = all weigh the same
     iterations: int = 0
     relax_sites: bool = True  # move chosen sites too (those of COUNT and IMAGE always move)
+    equal_cells: bool = False  # all of one area, or of one share of the image's tone
     use_modifiers: bool = False
     lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of a cell's size
     make_edges: bool = True

@@ -36,12 +36,16 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
     space = space_of(request, progress, cache)
     what = digest(
         settings.space, settings.sites_source, settings.count, settings.seed, settings.iterations,
+        settings.equal_cells,
         request.uv, request.is_mirrored, request.sites, request.weights, request.darkness,
     )  # fmt: skip
     key = ("sites 2d", request.surface.key, what)
     sites = cache.get(key, lambda: _placed(request, space, progress), lambda s: s.nbytes)
     with progress.stage(0.8, "finding the cells") as job:
-        diagram = devices.plane_diagram(sites.places, request.weights, request.threads, progress, job)
+        if sites.powers is None:
+            diagram = devices.plane_diagram(sites.places, request.weights, request.threads, progress, job)
+        else:
+            diagram = native.load().power_diagram_2d(sites.places, sites.powers, threads=request.threads, job=job)
     if space.frame is None:
         result = Voronoi2dResult(_lifted(request, space, sites, diagram, key[1:], progress, cache))
     else:
@@ -58,6 +62,7 @@ class _Sites:
     faces: Indices | None = None  # (n,)
     barycentric: Reals | None = None  # (n, 3)
     tone: Reals | None = None  # (n,) how dark the image is there
+    powers: Reals | None = None  # (n,) of cells of one size
 
     @classmethod
     def at(cls, space: Space, points: Any) -> _Sites:
@@ -83,13 +88,20 @@ class _Sites:
     @property
     def nbytes(self) -> int:
         """Memory of the arrays."""
-        return 3 * self.places.nbytes
+        return 4 * self.places.nbytes
 
 
 def _check(request: Voronoi2dRequest) -> None:
     settings, name = request.settings, request.surface.name
     if settings.animate and settings.space != "OUTLINE":
         raise BadInputError(f"'{name}': the sweep is shown on flat meshes only; switch Animate off, or choose Outline")
+    if settings.animate and settings.equal_cells:
+        raise BadInputError(f"'{name}': the sweep shows cells of any size; switch Animate off, or Equal Cells")
+    if request.weights is not None and settings.equal_cells:
+        raise BadInputError(
+            f"'{name}': cells are as large as the weights say, or all alike; leave their name empty, or switch Equal "
+            "Cells off"
+        )
     if request.weights is not None and settings.space != "OUTLINE":
         raise BadInputError(f"'{name}': weights count on flat meshes only; leave their name empty, or choose Outline")
 
@@ -97,6 +109,8 @@ def _check(request: Voronoi2dRequest) -> None:
 def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sites:
     density = _darkness(request, space) if request.darkness is not None else None
     sites = _relaxed(request, space, _sites(request, space, density), density, progress)
+    if request.settings.equal_cells:
+        sites = _equal(request, space, sites, density, progress)
     return sites if density is None else replace(sites, tone=darkness_at(density, *space.box, sites.places))
 
 
@@ -151,6 +165,39 @@ def _relaxed(
             weights=request.weights, threads=request.threads, job=job,
         )  # fmt: skip
     return sites.moved(space, relaxed.sites)
+
+
+def _equal(request: Voronoi2dRequest, space: Space, sites: _Sites, density: Reals | None, progress: Progress) -> _Sites:
+    """Cells of one area, on the surface too, or of one share of the image's tone."""
+    mass = _stretch(space) if space.frame is None and density is None else density
+    balance = native.load().balance_2d
+    most = 5  # steps: sites that were relaxed are nearly there
+    with progress.stage(0.75, "making the cells equal") as job:
+        done = balance(
+            sites.places, space.loops, mass, max_iterations=min(most, request.settings.iterations), tolerance=0.0,
+            threads=request.threads, job=job,
+        )  # fmt: skip
+    moved = sites.moved(space, done.sites)
+    if (moved.places != done.sites).any():  # some would be off the surface: their cells stay where they are
+        with progress.stage(0.78, "making the cells equal") as job:
+            done = balance(moved.places, space.loops, mass, max_iterations=0, threads=request.threads, job=job)
+    return replace(moved, powers=done.weights)
+
+
+def _stretch(space: Space) -> Reals:
+    """How much of the surface lies in each of many equal rectangles over the map's box, in proportion."""
+    size = 512
+    low, high = space.box
+    middles = (np.arange(size) + 0.5) / size
+    x, y = np.meshgrid(*(low[k] + middles * (high[k] - low[k]) for k in range(2)))
+    points, inside = space.chart.locate(np.stack([x, y], axis=-1).reshape(-1, 2))
+    corners = space.mesh.vertices[space.mesh.triangles]
+    on_surface = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    u, v = (space.chart.corners.reshape(-1, 3, 2)[:, k] - space.chart.corners.reshape(-1, 3, 2)[:, 0] for k in (1, 2))
+    shares = on_surface / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    result = np.zeros(size * size)
+    result[inside] = shares[points.faces]
+    return result.reshape(size, size)
 
 
 def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, progress: Progress) -> _Sites:

@@ -42,6 +42,9 @@ VORONOI_2D: dict[str, Any] = {
         options={"SKIP_SAVE"},
     ),
     "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", True),
+    "equal_cells": switch(
+        "Equal Cells", "Give all cells just the same area, or as much of the image's tone: sides move, too", False
+    ),
     "use_modifiers": use_modifiers(),
     "lengths": TESSELLATE["lengths"],
     "make_edges": TESSELLATE["make_edges"],

@@ -269,6 +269,7 @@ def draw_plane_sites(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
     row = layout.row()
     row.active = source in ("COUNT", "IMAGE") or settings.relax_sites
     row.prop(settings, "iterations")
+    layout.prop(settings, "equal_cells")
 
 
 def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
