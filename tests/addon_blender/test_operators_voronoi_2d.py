@@ -317,6 +317,31 @@ def test_the_sweep_plays_back():
     assert lengths[0] == pytest.approx(lengths[1], rel=1e-4)
 
 
+@pytest.mark.parametrize("circles", ["CURSOR", "EMPTIES", "COUNT"])
+def test_circles_of_ones_own(circles):
+    item = grid(n=2, size=2.0)
+    places = [(0.5, 0.5, 0.0), (1.5, 0.4, 1.0), (1.0, 1.6, 0.0)]
+    for place in places:
+        empty = bpy.data.objects.new("Here", None)
+        bpy.context.collection.objects.link(empty)
+        empty.location = place
+        empty.parent = item
+    bpy.context.scene.cursor.location = places[0]
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.voronoi_2d(count=60, animate=True, circles=circles, circle_count=3, frame_end=40)
+    circle, beach, edges = (find_output(item, role) for role in ("sweep circle", "beach curve", "growing edges"))
+    if circles != "COUNT":
+        assert np.allclose(circle.matrix_world.translation, places[0], atol=1e-6)
+    counts = [shown(edges, frame)[1] for frame in (1, 10, 20, 30, 40, 60)]
+    assert counts == sorted(counts) and counts[-1] == len(edges.data.edges) > counts[1] > 0
+    rings = shown(beach, 20)[0]
+    assert len(rings) == (512 + 256 if circles == "CURSOR" else 2 * 3 * 512)
+    if circles == "EMPTIES":
+        flat = np.array(places) * (1, 1, 0)
+        around = np.linalg.norm(rings[3 * 512 :].reshape(3, 512, 3) - flat[:, None], axis=2)
+        assert np.ptp(around, axis=1).max() < 1e-5 and around.min() > 0.05
+
+
 def test_a_frame_of_500_sites_takes_little_time():
     item = grid(n=2)
     bpy.ops.saddleback.voronoi_2d(count=500, animate=True)
@@ -391,6 +416,8 @@ def test_frames_and_spaces_of_the_sweep():
     grid(n=2)
     refused("the sweep ends in frame 5", animate=True, frame_start=9, frame_end=5)
     refused("shown on flat meshes only", animate=True, space="DISK")
+    refused("no empty is parented to 'Grid'; add one at each place to grow a circle", animate=True, circles="EMPTIES")
+    refused("no collection 'Gone'", animate=True, circles="EMPTIES", circles_collection="Gone")
 
 
 def dots_of(item):

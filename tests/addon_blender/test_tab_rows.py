@@ -125,7 +125,16 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
         "distance": {"sources_group", "sources_collection", "sources_object", "isoline_spacing"},
         "path": {"points_group", "points_collection", "connect", "from_cursor"},
         "ribbon": {"curves_collection", "image_name", "ribbon_object"},
-        "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},
+        "voronoi_2d": {
+            "uv_name",
+            "sites_object",
+            "image_name",
+            "image_invert",
+            "weights_name",
+            "relax_sites",
+            "circles_collection",
+            "circle_count",
+        },
         "direction_field": {
             "strokes_object",
             "strokes_collection",

@@ -165,10 +165,10 @@ def test_the_sweep_uncovers_what_the_circle_has_passed():
     center = sweep.center
     nearest = np.linalg.norm(sweep.edge_vertices[:, None] - sites, axis=2).min(axis=1)
     np.testing.assert_allclose(sweep.edge_radius, nearest + np.linalg.norm(sweep.edge_vertices - center, axis=1))
-    assert sweep.rings.shape == (40, 512, 3) and sweep.last_radius == sweep.edge_radius.max()
+    assert sweep.rings.shape == (40, 1, 512, 3) and sweep.last_radius == sweep.edge_radius.max()
     for number in (9, 24, 39):
         radius = sweep.last_radius * (number + 1) / 40
-        ring = sweep.rings[number]
+        ring = sweep.rings[number, 0]
         near = np.linalg.norm(ring[:, None] - sites, axis=2).min(axis=1)
         np.testing.assert_allclose(near + np.linalg.norm(ring - center, axis=1), radius, rtol=1e-9)
     steps = np.linalg.norm(np.diff(sweep.edge_vertices[sweep.edges], axis=1)[:, 0], axis=1)
@@ -185,11 +185,55 @@ def test_heavier_sites_are_met_earlier():
     passed = near + np.linalg.norm(sweep.edge_vertices - sweep.center, axis=1)
     # Between the corners of their polylines curved edges lie beside them.
     np.testing.assert_allclose(sweep.edge_radius, passed, atol=2e-3)
-    ring = sweep.rings[19]
+    ring = sweep.rings[19, 0]
     near = (np.linalg.norm(ring[:, None] - sites, axis=2) - weights).min(axis=1)
     np.testing.assert_allclose(
         near + np.linalg.norm(ring - sweep.center, axis=1), 20 / 30 * sweep.last_radius, rtol=1e-9
     )
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+@pytest.mark.parametrize("circles", [1, 2, 9])
+def test_several_circles_share_the_sweep(circles, weighted):
+    """Edges are uncovered where a circle has passed them that has not stopped; none is left; each stops by itself."""
+    rng = np.random.default_rng(5)
+    sites = np.column_stack([rng.random((80, 2)), np.zeros(80)])
+    weights = 0.03 * rng.random(80) if weighted else None
+    lead = 0.0 if weights is None else weights
+    places = np.column_stack([rng.random((circles, 2)), np.ones(circles)])
+    given = {"sites": sites, "weights": weights, "circles": places}
+    settings = {"sites_source": "OBJECT", "animate": True, "frame_end": 40, "circles": "EMPTIES"}
+    sweep = voronoi_2d(shapes.grid(6), given=given, **settings).sweep
+    centers = places * (1, 1, 0)
+    alone = [voronoi_2d(shapes.grid(6), given={**given, "circles": place[None]}, **settings).sweep for place in places]
+    np.testing.assert_allclose(sweep.center, centers[0], atol=1e-12)
+    assert sweep.rings.shape == (40, 1 if circles == 1 else 2 * circles, {9: 227}.get(circles, 512), 3)
+    near = (np.linalg.norm(sweep.edge_vertices[:, None] - sites, axis=2) - lead).min(axis=1)
+    passed = near[:, None] + np.linalg.norm(sweep.edge_vertices[:, None] - centers, axis=2)
+    assert (sweep.edge_radius >= passed.min(axis=1) - 2e-3).all()
+    assert (sweep.edge_radius <= passed.max(axis=1) + 2e-3).all()
+    assert np.isfinite(sweep.edge_radius).all() and len(sweep.edge_vertices) == len(alone[0].edge_vertices)
+    if circles == 1:
+        return
+    assert sweep.last_radius <= (1 + 1e-12) * min(one.last_radius for one in alone)
+    radius = np.linalg.norm(sweep.rings[:, circles:] - centers[None, :, None], axis=3)
+    assert np.ptp(radius, axis=2).max() < 1e-9
+    radius = radius[:, :, 0]
+    assert (np.diff(radius, axis=0) >= -1e-12).all() and (radius <= sweep.last_radius * (1 + 1e-12)).all()
+    assert radius[-1].min() < 0.99 * sweep.last_radius or circles == 2
+    for number, circle in np.argwhere(radius > 0.2):  # beach curves of circles that have come to a site
+        ring = sweep.rings[number, circle]
+        depth = (np.linalg.norm(ring[:, None] - sites, axis=2) - lead).min(axis=1)
+        whole = depth + np.linalg.norm(ring - centers[circle], axis=1)
+        np.testing.assert_allclose(whole, radius[number, circle], rtol=1e-6)
+
+
+def test_a_count_of_circles_is_spread():
+    sweep = voronoi_2d(shapes.grid(6), count=60, animate=True, circles="COUNT", circle_count=4).sweep
+    assert sweep.rings.shape[1] == 8
+    centers = sweep.rings[-1, 4:].mean(axis=1)
+    apart = np.linalg.norm(centers[:, None] - centers, axis=2)[np.triu_indices(4, 1)]
+    assert apart.min() > 0.3 * np.ptp(shapes.grid(6).vertices[:, 0])
 
 
 def test_one_site_has_a_sweep_too():

@@ -354,4 +354,5 @@ class Voronoi2dRequest:
     sites: Points | None = None  # None: place `settings.count`
     weights: Reals | None = None  # one for each of `sites`
     darkness: Reals | None = None  # (rows, columns) 0 to 1, the first row below; of the sites source IMAGE
+    circles: Reals | None = None  # (m, 3) world places that sweep circles grow from, where they are chosen
     threads: int = 0

@@ -206,15 +206,17 @@ class FlatCells(CellPolygons):
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep circle that grows: what is to be seen at which radius."""
+    """Sweep circles that grow together: what is to be seen at which radius."""
 
-    center: Reals  # (3,)
+    center: Reals  # (3,) of the first
     axes: Reals  # (3, 3) rows: two directions in the plane, and its normal
     last_radius: float  # all edges are there
     edge_vertices: Reals  # (n, 3) edges in short pieces
     edges: Indices  # (m, 2)
     edge_radius: Reals  # (n,) radius at which the beach curve has passed the vertex
-    rings: Reals  # (k, s, 3) the beach curve at k radii: last_radius * (1 to k) / k
+    # (k, m, s, 3) at k radii, last_radius * (1 to k) / k: the beach curve; of several circles all of these, and then
+    # the circles, each as large as it gets.
+    rings: Reals
 
 
 @dataclass(frozen=True)

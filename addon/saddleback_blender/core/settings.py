@@ -232,6 +232,9 @@ class Voronoi2dSettings(RegionSettings):
     instance_size: str = "CELL"  # EQUAL, CELL, TONE = by the darkness of the image, or by the density
     instance_scale: float = 1.0
     animate: bool = False
+    circles: str = "MIDDLE"  # of the sweep: MIDDLE = one, CURSOR = one, EMPTIES, COUNT
+    circles_collection: str = ""  # "" = the empties parented to the object
+    circle_count: int = 9
     frame_start: int = 1
     frame_end: int = 120
 

@@ -266,8 +266,23 @@ def _flat(
     if settings.animate:
         frames = settings.frame_end - settings.frame_start + 1
         with progress.stage(0.98, "following the sweep"):
-            sweep = sweep_over(sites.places, request.weights, flat, space.frame, frames, progress)
+            centers = _centers(request, space)
+            sweep = sweep_over(sites.places, request.weights, flat, space, centers, frames, progress)
     return Voronoi2dResult(cells, flat, polygons, vanished, sweep)
+
+
+def _centers(request: Voronoi2dRequest, space: Space) -> Reals | None:
+    """Returns where circles grow from, in the plane; None for one from the middle."""
+    assert space.frame is not None
+    if request.circles is not None:
+        return space.frame.to_plane(request.circles)
+    settings = request.settings
+    if settings.circles != "COUNT":
+        return None
+    sb = native.load()
+    places = _Sites.at(space, sb.sample(space.mesh, settings.circle_count, seed=settings.seed)).places
+    relaxed: Reals = sb.relax_2d(places, space.loops, max_iterations=20, threads=request.threads).sites
+    return relaxed
 
 
 def _shaped(

@@ -14,7 +14,7 @@ from .. import prefs
 from ..blocks import find
 from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
 from ..bridge.inputs.region_in import read_part
-from ..bridge.inputs.voronoi_in import read_darkness, read_uv, read_voronoi_sites
+from ..bridge.inputs.voronoi_in import read_circles, read_darkness, read_uv, read_voronoi_sites
 from ..bridge.outputs.following import Follower
 from ..bridge.outputs.out_cells import write_cells, write_polygons
 from ..bridge.outputs.out_centers import write_centers
@@ -63,6 +63,7 @@ class PlaneOperator(SurfaceOperator):
                 sites=sites,
                 weights=weights,
                 darkness=read_darkness(source, settings),
+                circles=read_circles(context, source, settings),
                 threads=prefs.threads(context),
             )
         return partial(_run, request, is_found)

@@ -72,6 +72,7 @@ COLLECTION_NAMES = (
     "density_collection",
     "shapes_collection",
     "curves_collection",
+    "circles_collection",
 )
 IMAGE_NAMES = ("image_name", "density_image", "shapes_image", "direction_image", "painted_image")
 TOLD, FIGURES = "told", "figures"  # on each group: what the last run said of the object, a sentence a line

@@ -23,6 +23,13 @@ PLANE_SITES = (
     ("IMAGE", "Image", "Place this many sites by how dark an image is: stippling"),
 )
 
+CIRCLES = (
+    ("MIDDLE", "Middle", "One circle, from the middle"),
+    ("CURSOR", "3D Cursor", "One circle, from the 3D cursor"),
+    ("EMPTIES", "Empties", "A circle from each empty; each stops when its own cells are found"),
+    ("COUNT", "Count", "This many circles, spread evenly; each stops when its own cells are found"),
+)
+
 VORONOI_2D: dict[str, Any] = {
     "space": choice("Space", "The plane that the diagram is made in", SPACES, "OUTLINE"),
     "uv_name": name_of("UV Map", "The UV map; empty means the active one"),
@@ -65,6 +72,19 @@ VORONOI_2D: dict[str, Any] = {
     "instance_size": TESSELLATE["instance_size"],
     "instance_scale": TESSELLATE["instance_scale"],
     "animate": switch("Animate", "Make a sweep circle that grows and uncovers the edges, frame by frame", False),
+    "circles": choice("Circles", "Where the circles of the sweep grow from", CIRCLES, "MIDDLE"),
+    "circles_collection": name_of(
+        "Collection", "Circles grow from its empties; empty means those parented to the object"
+    ),
+    "circle_count": IntProperty(
+        name="Circles",
+        description="How many circles share the sweep, spread evenly",
+        default=9,
+        min=1,
+        max=100,
+        soft_max=25,
+        options={"SKIP_SAVE"},
+    ),
     "frame_start": IntProperty(
         name="Start", description="Frame in which the sweep begins", default=1, options={"SKIP_SAVE"}
     ),

@@ -273,8 +273,13 @@ def draw_plane_sites(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
 
 
 def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
-    """The frames of the sweep."""
+    """Where a sweep's circles grow from, and its frames."""
     layout.active = settings.animate
+    layout.prop(settings, "circles")
+    if settings.circles == "EMPTIES":
+        draw_collection(layout, settings, "circles_collection")
+    elif settings.circles == "COUNT":
+        layout.prop(settings, "circle_count")
     column = layout.column(align=True)
     column.prop(settings, "frame_start")
     column.prop(settings, "frame_end")

@@ -125,7 +125,9 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
     return points
 
 
-def empty_points(context: bpy.types.Context, source: bpy.types.Object, collection: str) -> Reals:
+def empty_points(
+    context: bpy.types.Context, source: bpy.types.Object, collection: str, purpose: str = "to measure from"
+) -> Reals:
     """(n, 3) world places of the empties in a collection or, without one, of those parented to the object."""
     if collection:
         group = find(bpy.data.collections, collection)
@@ -139,5 +141,5 @@ def empty_points(context: bpy.types.Context, source: bpy.types.Object, collectio
     # By name, so that the sources' order does not depend on the order of linking.
     empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name_full)
     if not empties:
-        raise BadInputError(f"'{source.name}': no empty is {where}; add one at each place to measure from")
+        raise BadInputError(f"'{source.name}': no empty is {where}; add one at each place {purpose}")
     return places_of(context, empties)

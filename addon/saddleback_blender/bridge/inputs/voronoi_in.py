@@ -17,7 +17,7 @@ from ...core.settings import Voronoi2dSettings
 from .density import NUMBER_TYPES
 from .images_in import read_pixels
 from .mesh_in import mesh_of
-from .sites import object_points, selected_vertices
+from .sites import cursor_point, empty_points, object_points, selected_vertices
 
 
 def read_uv(
@@ -78,6 +78,15 @@ def _weights(item: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> Reals |
     values: NDArray[np.generic] = np.zeros(len(attribute.data), dtype)
     attribute.data.foreach_get(prop, compat.as_copied(values))
     return values.astype(np.float64)
+
+
+def read_circles(context: bpy.types.Context, source: bpy.types.Object, settings: Voronoi2dSettings) -> Reals | None:
+    """(m, 3) world places that a sweep's circles grow from; None where they are to be placed."""
+    if not settings.animate or settings.circles not in ("CURSOR", "EMPTIES"):
+        return None
+    if settings.circles == "CURSOR":
+        return cursor_point(context)
+    return empty_points(context, source, settings.circles_collection, "to grow a circle from")
 
 
 def read_darkness(source: bpy.types.Object, settings: Voronoi2dSettings) -> Reals | None:

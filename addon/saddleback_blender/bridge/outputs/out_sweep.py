@@ -27,14 +27,17 @@ def write_sweep(
     circle = replace_object(context, source, CIRCLE_ROLE, _circle(), place)
     circle.hide_render = True
     _animate(circle, sweep, settings)
-    ring_count, size = sweep.rings.shape[:2]
-    radii = np.repeat(sweep.last_radius * np.arange(1, ring_count + 1) / ring_count, size)
+    ring_count, loop_count, size = sweep.rings.shape[:3]
+    radii = np.repeat(sweep.last_radius * np.arange(1, ring_count + 1) / ring_count, loop_count * size)
     half = 0.5 * sweep.last_radius / ring_count
-    number = np.arange(ring_count * size, dtype=np.int32).reshape(ring_count, size)
+    number = np.arange(ring_count * loop_count * size, dtype=np.int32).reshape(-1, size)
     around = np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2)
     beach = _mesh("Saddleback Beach Curve", to_place(place, sweep.rings.reshape(-1, 3)), around)
     _show_between(beach, radii - half, radii + half)
-    _write(context, source, BEACH_ROLE, beach, place, circle, 0.5 * settings.edge_radius, nodes.paths_material())
+    _write(
+        context, source, BEACH_ROLE, beach, place, circle, 0.5 * settings.edge_radius, nodes.paths_material(),
+        draws_circle=loop_count == 1,
+    )  # fmt: skip
     edges = _mesh("Saddleback Growing Edges", to_place(place, sweep.edge_vertices), sweep.edges)
     # As the beach curve is shown from half a step before its radius on, edges do not run ahead of it.
     _show_between(edges, sweep.edge_radius, np.full(len(sweep.edge_radius), NEVER))
@@ -88,8 +91,9 @@ def _write(
     circle: bpy.types.Object,
     radius: float,
     material: bpy.types.Material,
+    draws_circle: bool = False,
 ) -> None:
     mesh.materials.append(material)
     item = replace_object(context, source, role, mesh, place)
     nodes.set_tubes(item, radius, material)
-    nodes.set_sweep(item, circle, role == BEACH_ROLE)
+    nodes.set_sweep(item, circle, draws_circle)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sweep circle as it grows over a flat mesh: what of the diagram is there at which radius."""
+"""Sweep circles as they grow over a flat mesh: what of the diagram is there at which radius."""
 
 from __future__ import annotations
 
@@ -10,42 +10,66 @@ import numpy as np
 from .. import native
 from ..progress import Progress
 from ..results import FlatCells, Indices, Reals, Sweep
-from .plane_frame import PlaneFrame
+from .spaces import Space
 
 MOST_RINGS = 400
 RING_POINTS = 512
+ALL_POINTS, FEWEST_POINTS = 2048, 64  # of the rings of several circles together, and of each of many
 PIECES_ACROSS = 150  # edges grow in steps of about this part of the domain's extent
 
 
 def sweep_over(
-    sites: Reals, weights: Reals | None, cells: FlatCells, frame: PlaneFrame, frames: int, progress: Progress
+    sites: Reals,
+    weights: Reals | None,
+    cells: FlatCells,
+    space: Space,
+    centers: Reals | None,
+    frames: int,
+    progress: Progress,
 ) -> Sweep:
-    """The circle grows from the middle of the domain, about one step of the beach curve a frame.
+    """Circles grow from their centers, or one from the middle of the domain, about one step of the beach curve a frame.
 
     A point x of an edge is passed by the beach curve of center c when the circle's radius is |x - c| + |x - s| - w, s
-    being one of its two sites.
+    being one of its two sites. Of several circles the first that gets there uncovers it.
     """
+    frame = space.frame
+    assert frame is not None
     corners = frame.to_plane(cells.vertices)
     low, high = corners.min(axis=0), corners.max(axis=0)
-    center = 0.5 * (low + high)
+    if centers is None:
+        centers = 0.5 * (low + high)[None]
     inner = (cells.edge_cells >= 0).all(axis=1)
     step = float((high - low).max()) / PIECES_ACROSS
     places, edges, site = _pieces(corners, cells.edges[inner], cells.edge_cells[inner, 0], step)
-    radius = np.linalg.norm(places - center, axis=1) + np.linalg.norm(places - sites[site], axis=1)
-    if weights is not None:
-        radius = radius - weights[site]
-    last = float(radius.max(initial=0.0)) or float(np.linalg.norm(high - center))
+    passed = np.linalg.norm(places[:, None] - centers, axis=2)
+    passed += (np.linalg.norm(places - sites[site], axis=1) - (0.0 if weights is None else weights[site]))[:, None]
+    if len(centers) > 1:
+        ends = _ends(sites, weights, centers, space, float(passed.max(initial=0.0)), progress)
+        is_met = passed <= ends * (1 + 1e-9)
+        passed = np.where(is_met | ~is_met.any(axis=1)[:, None], passed, np.inf)
+    radius: Reals = passed.min(axis=1)
+    last = float(radius.max(initial=0.0)) or float(np.linalg.norm(high - centers[0]))
     count = min(max(frames, 2), MOST_RINGS)
-    rings = _rings(sites, weights, center, last * np.arange(1, count + 1) / count, progress)
+    rings = _rings(sites, weights, centers, space, last * np.arange(1, count + 1) / count, progress)
     return Sweep(
-        center=frame.to_world(center[None])[0],
+        center=frame.to_world(centers[:1])[0],
         axes=frame.axes,
         last_radius=last,
         edge_vertices=frame.to_world(places),
         edges=edges,
         edge_radius=radius,
-        rings=frame.to_world(rings.reshape(-1, 2)).reshape(count, -1, 3),
+        rings=frame.to_world(rings.reshape(-1, 2)).reshape(*rings.shape[:3], 3),
     )
+
+
+def _ends(
+    sites: Reals, weights: Reals | None, centers: Reals, space: Space, longest: float, progress: Progress
+) -> Reals:
+    """(m,) radii at which circles stop, since they have found the cells of the sites that are nearest to them."""
+    sweep: Any = native.load().SweepCircles(sites, centers, weights, domain=space.loops)
+    progress.check()
+    sweep.grow(2 * longest)
+    return np.array(sweep.radii)
 
 
 def _pieces(corners: Reals, edges: Indices, cells: Indices, step: float) -> tuple[Reals, Indices, Indices]:
@@ -69,13 +93,30 @@ def _pieces(corners: Reals, edges: Indices, cells: Indices, step: float) -> tupl
     return places[used], pieces.reshape(-1, 2).astype(np.int32), sites[used].astype(np.int32)
 
 
-def _rings(sites: Reals, weights: Reals | None, center: Reals, radii: Reals, progress: Progress) -> Reals:
-    """(k, RING_POINTS, 2) the beach curve at each radius; all at the center before the first site is touched."""
-    sweep: Any = native.load().SweepCircle(sites, center, weights)
-    rings = np.empty((len(radii), RING_POINTS, 2))
+def _rings(
+    sites: Reals, weights: Reals | None, centers: Reals, space: Space, radii: Reals, progress: Progress
+) -> Reals:
+    """(k, m or 2 m, s, 2): beach curves at each radius, all at their centers before the first site is
+    touched; and the circles, where there are several.
+    """
+    sb: Any = native.load()
+    several = len(centers) > 1
+    sweep: Any = (
+        sb.SweepCircles(sites, centers, weights, domain=space.loops)
+        if several
+        else sb.SweepCircle(sites, centers[0], weights)
+    )
+    points = min(RING_POINTS, max(FEWEST_POINTS, ALL_POINTS // len(centers)))
+    rings = np.empty((len(radii), 2 * len(centers) if several else 1, points, 2))
+    turn = 2 * np.pi * np.arange(points) / points
+    round_one = np.column_stack([np.cos(turn), np.sin(turn)])
     for number, radius in enumerate(radii):
         progress.check()
         sweep.grow(float(radius))
-        curve = sweep.beach_curve(RING_POINTS)
-        rings[number] = curve if len(curve) else center
+        for circle, center in enumerate(centers):
+            curve = sweep.beach_curve(circle, points) if several else sweep.beach_curve(points)
+            rings[number, circle] = curve if len(curve) else center
+        if several:
+            reached = np.minimum(np.where(np.isfinite(sweep.radii), sweep.radii, 0.0), radius)
+            rings[number, len(centers) :] = centers[:, None] + np.maximum(reached, 0.0)[:, None, None] * round_one
     return rings
