@@ -512,3 +512,74 @@ def test_equal_cells_say_what_they_do_not_go_with():
         select(item, [0, 3, 7])
         with pytest.raises(RuntimeError, match=sentence):
             bpy.ops.saddleback.voronoi_2d(equal_cells=True, **settings)
+
+
+def turned_rectangle():
+    vertices, quads = grid_arrays(4, 2.0)
+    item = add_object("Tile", np.asarray(vertices) * [1.0, 0.5, 1.0], quads)
+    item.rotation_euler = (0.3, 0.8, 0.5)
+    item.location = (1.0, -2.0, 3.0)
+    bpy.context.view_layer.update()
+    return item
+
+
+@pytest.mark.parametrize("iterations", [0, 25])
+def test_seamless_cells_fit_the_opposite_side(iterations):
+    item = turned_rectangle()
+    bpy.ops.saddleback.voronoi_2d(count=30, iterations=iterations, seamless=True, make_centers=True)
+    cells = find_output(item, CELLS)
+    numbers, areas = faces(cells)
+    assert areas.sum() == pytest.approx(2.0, rel=1e-5)
+    assert set(numbers) == set(range(30))
+    places = positions(cells.data)
+    low, high = places.min(axis=0), places.max(axis=0)
+    for axis in (0, 1):
+        across = 1 - axis
+        sides = [
+            sorted(
+                (min(places[a, across], places[b, across]), max(places[a, across], places[b, across]), cell)
+                for polygon, cell in zip(cells.data.polygons, numbers, strict=True)
+                for a, b in polygon.edge_keys
+                if abs(places[a, axis] - end[axis]) < 1e-5 and abs(places[b, axis] - end[axis]) < 1e-5
+            )
+            for end in (low, high)
+        ]
+        assert len(sides[0]) == len(sides[1]) > 2
+        assert [cell for *_, cell in sides[0]] == [cell for *_, cell in sides[1]]
+        assert np.abs(np.array(sides[0])[:, :2] - np.array(sides[1])[:, :2]).max() < 1e-5
+    if iterations:
+        each = np.bincount(numbers, areas, minlength=30)
+        assert each.std() < 0.2 * each.mean()
+
+
+def test_seamless_cells_have_gaps_and_rims_across_the_sides():
+    item = turned_rectangle()
+    bpy.ops.saddleback.voronoi_2d(count=30, iterations=10, seamless=True, gap=0.03, inset=0.04, thickness=0.05)
+    cells = find_output(item, CELLS)
+    attribute = np.empty(len(cells.data.polygons), np.int32)
+    cells.data.attributes["saddleback_cell"].data.foreach_get("value", attribute)
+    assert set(attribute) == set(range(30))
+    places = positions(cells.data)
+    heights = places[:, 2] - places[:, 2].min()
+    low, high = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
+    ends = [np.sort(places[(np.abs(places[:, 0] - end) < 1e-5) & (heights > 0.049)][:, 1]) for end in (low[0], high[0])]
+    assert len(ends[0]) == len(ends[1]) > 2
+    assert np.abs(ends[0] - ends[1]).max() < 1e-5
+
+
+def test_seamless_says_what_it_needs():
+    half = image("Half", np.repeat([[0.2] * 32 + [0.8] * 32], 64, axis=0))
+    for make, settings, sentence in (
+        (frame_with_hole, {}, "is no rectangle, so that its sides do not fit each other; switch Seamless off"),
+        (turned_rectangle, {"equal_cells": True}, "Seamless: equal cells are not; switch one of both off"),
+        (turned_rectangle, {"animate": True}, "Seamless: the sweep is not; switch Animate off"),
+        (
+            turned_rectangle,
+            {"sites_source": "IMAGE", "image_name": half.name},
+            "Seamless: an image is not; choose other Sites",
+        ),
+        (unwrapped_cylinder, {"space": "UV"}, "Seamless: only flat rectangles are; choose Outline"),
+    ):
+        make()
+        with pytest.raises(RuntimeError, match=sentence):
+            bpy.ops.saddleback.voronoi_2d(seamless=True, count=20, **settings)

@@ -212,6 +212,7 @@ class Voronoi2dSettings(RegionSettings):
     iterations: int = 0
     relax_sites: bool = True  # move chosen sites too (those of COUNT and IMAGE always move)
     equal_cells: bool = False  # all of one area, or of one share of the image's tone
+    seamless: bool = False  # opposite sides of a rectangle are one
     use_modifiers: bool = False
     lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of a cell's size
     make_edges: bool = True

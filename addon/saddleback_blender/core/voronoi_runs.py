@@ -23,6 +23,7 @@ from .surfaces.normals import normals_at
 from .surfaces.spaces import Space, space_of
 from .surfaces.surface_places import compact_points
 from .surfaces.sweep import sweep_over
+from .surfaces.tiles import tile_of
 
 
 def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | None = None) -> Voronoi2dResult:
@@ -36,14 +37,17 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
     space = space_of(request, progress, cache)
     what = digest(
         settings.space, settings.sites_source, settings.count, settings.seed, settings.iterations,
-        settings.equal_cells,
+        settings.equal_cells, settings.seamless,
         request.uv, request.is_mirrored, request.sites, request.weights, request.darkness,
     )  # fmt: skip
     key = ("sites 2d", request.surface.key, what)
     sites = cache.get(key, lambda: _placed(request, space, progress), lambda s: s.nbytes)
     with progress.stage(0.8, "finding the cells") as job:
         if sites.powers is None:
-            diagram = devices.plane_diagram(sites.places, request.weights, request.threads, progress, job)
+            places = sites.places
+            if settings.seamless:
+                places = tile_of(space.loops, request.surface.name).copies(places)
+            diagram = devices.plane_diagram(places, request.weights, request.threads, progress, job)
         else:
             diagram = native.load().power_diagram_2d(sites.places, sites.powers, threads=request.threads, job=job)
     if space.frame is None:
@@ -97,6 +101,8 @@ def _check(request: Voronoi2dRequest) -> None:
         raise BadInputError(f"'{name}': the sweep is shown on flat meshes only; switch Animate off, or choose Outline")
     if settings.animate and settings.equal_cells:
         raise BadInputError(f"'{name}': the sweep shows cells of any size; switch Animate off, or Equal Cells")
+    if settings.seamless:
+        _check_seamless(request)
     if request.weights is not None and settings.equal_cells:
         raise BadInputError(
             f"'{name}': cells are as large as the weights say, or all alike; leave their name empty, or switch Equal "
@@ -104,6 +110,19 @@ def _check(request: Voronoi2dRequest) -> None:
         )
     if request.weights is not None and settings.space != "OUTLINE":
         raise BadInputError(f"'{name}': weights count on flat meshes only; leave their name empty, or choose Outline")
+
+
+def _check_seamless(request: Voronoi2dRequest) -> None:
+    settings, name = request.settings, request.surface.name
+    for is_wrong, reason in (
+        (settings.space != "OUTLINE", "only flat rectangles are; choose Outline"),
+        (request.weights is not None, "sites with weights are not; leave their name empty"),
+        (request.darkness is not None, "an image is not; choose other Sites"),
+        (settings.equal_cells, "equal cells are not; switch one of both off"),
+        (settings.animate, "the sweep is not; switch Animate off"),
+    ):
+        if is_wrong:
+            raise BadInputError(f"'{name}': Seamless: {reason}")
 
 
 def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sites:
@@ -155,6 +174,9 @@ def _relaxed(
 ) -> _Sites:
     """The sites after the wanted steps. A step that would take a site off the surface is not taken."""
     settings = request.settings
+    if settings.seamless:
+        tile = tile_of(space.loops, request.surface.name)
+        return replace(sites, places=tile.relaxed(sites.places, settings.iterations, request.threads, 0.7, progress))
     if not settings.iterations:
         return sites
     if space.frame is None and density is None:
@@ -248,8 +270,14 @@ def _flat(
     settings = request.settings
     with progress.stage(0.9, "cutting the cells out") as job:
         clipped = diagram.clip(space.loops, threads=request.threads, job=job)
+    count = len(sites.places)  # of seamless cells there are nine copies
     flat = flat_cells(clipped, space.frame)
-    cells = _bare_cells(space, sites, np.asarray(clipped.areas))
+    flat = replace(
+        flat,
+        polygon_cell=flat.polygon_cell % count,
+        edge_cells=np.where(flat.edge_cells < 0, -1, flat.edge_cells % count),
+    )
+    cells = _bare_cells(space, sites, np.asarray(clipped.areas).reshape(-1, count).sum(axis=0))
     polygons: CellPolygons | None = None
     vanished = 0
     if settings.make_cells and flat.has_holes and request.weights is not None:
@@ -262,6 +290,7 @@ def _flat(
     elif settings.make_cells:
         with progress.stage(0.95, "shaping the cells") as job:
             polygons, vanished = _shaped(request, space, diagram, flat, job)
+            polygons = replace(polygons, polygon_cell=polygons.polygon_cell % count)
     sweep = None
     if settings.animate:
         frames = settings.frame_end - settings.frame_start + 1

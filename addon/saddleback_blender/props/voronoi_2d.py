@@ -52,6 +52,9 @@ VORONOI_2D: dict[str, Any] = {
     "equal_cells": switch(
         "Equal Cells", "Give all cells just the same area, or as much of the image's tone: sides move, too", False
     ),
+    "seamless": switch(
+        "Seamless", "Cells of a rectangle go on from each side to the opposite one: a tile that repeats", False
+    ),
     "use_modifiers": use_modifiers(),
     "lengths": TESSELLATE["lengths"],
     "make_edges": TESSELLATE["make_edges"],

@@ -270,6 +270,8 @@ def draw_plane_sites(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
     row.active = source in ("COUNT", "IMAGE") or settings.relax_sites
     row.prop(settings, "iterations")
     layout.prop(settings, "equal_cells")
+    if settings.space in ("AUTO", "OUTLINE"):
+        layout.prop(settings, "seamless")
 
 
 def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
