@@ -350,13 +350,22 @@ class Balancer {
     const double width = std::sqrt(domain_.area() / static_cast<double>(wanted_.size()));
     voronoi2d::add_edge_points(state.diagram, edge, k_share * width, 8 * edges.farthest(p, q), points);
     double gain = 0;
+    // In pieces no longer than they are far from the sites: the reciprocal changes little along one.
+    const auto add = [&](const auto& self, const Vec2& from, const Vec2& to) -> void {
+      const Vec2 middle = 0.5 * from + 0.5 * to, to_left = middle - p, to_right = middle - q;
+      constexpr double k_piece = 0.25, k_shortest = 1e-6;
+      const double piece = (to - from).norm(), away = std::min(to_left.norm(), to_right.norm());
+      if (piece > k_piece * away && piece > k_shortest * width) {
+        self(self, from, middle);
+        self(self, middle, to);
+        return;
+      }
+      const double apart = (to_left.stableNormalized() - to_right.stableNormalized()).norm();
+      constexpr double k_least = 1e-9;  // behind a site, where directions are alike to rounding
+      gain += length(from, to) / std::max(apart, k_least);
+    };
     for (std::size_t i = 0; i + 1 < points.size(); ++i)
-      edges.for_parts(points[i], points[i + 1], [&](const Vec2& from, const Vec2& to) {
-        const Vec2 middle = 0.5 * from + 0.5 * to;
-        const double apart = ((middle - p).stableNormalized() - (middle - q).stableNormalized()).norm();
-        constexpr double k_least = 1e-9;  // behind a site, where directions are alike to rounding
-        gain += length(from, to) / std::max(apart, k_least);
-      });
+      edges.for_parts(points[i], points[i + 1], [&](const Vec2& from, const Vec2& to) { add(add, from, to); });
     return gain;
   }
 
