@@ -197,8 +197,8 @@ void SteppedSweep::State::run(double up_to, const JobStage& stage) {
   }
 }
 
-/// Runs the sweep to its end before the first event is told, and then takes it back to `wanted`. Where rounding leads it
-/// astray, events are told from the diagram.
+/// Runs the sweep to its end before the first event is told, and then takes it back to `wanted`. Where rounding leads
+/// it astray, events are told from the diagram.
 void SteppedSweep::State::check(double wanted, Job* job) {
   const double before = radius;
   start_sweep();
