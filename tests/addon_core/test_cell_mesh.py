@@ -358,3 +358,20 @@ def test_domes_of_cells_with_heights_of_their_own() -> None:
     for cell in range(9):
         places = mesh.vertices[np.unique(mesh.triangles[mesh.triangle_cell == cell])]
         assert 0.95 * 0.2 * by[cell] <= places[:, 2].max() <= 0.2 * by[cell] + 1e-12
+
+
+def test_a_cell_that_is_all_of_its_part_is_as_high_all_over_beside_domes_of_others() -> None:
+    vertices, triangles, cells = strips()
+    lone, lone_triangles = synthetic_cells.grid(5, 5, 1.0, 1.0)
+    mesh = build_cell_mesh(
+        np.concatenate([vertices, lone + (9.0, 0.0, 0.0)]),
+        np.concatenate([triangles, lone_triangles + len(vertices)]),
+        np.concatenate([cells, np.full(len(lone_triangles), 4, np.int32)]),
+        CellShape(gap=0.1, inset=0.1, thickness=0.2, dome=1.0),
+    )
+    assert np.isfinite(mesh.vertices).all()
+    corners = mesh.vertices[mesh.triangles[mesh.triangle_cell == 4]].reshape(-1, 3)
+    up = corners[corners[:, 2] > 0.0]
+    np.testing.assert_allclose(up[:, 2], 0.2, atol=1e-9)
+    others = mesh.vertices[mesh.triangles[mesh.triangle_cell < 4]]
+    assert 0.15 < others[..., 2].max() <= 0.2 + 1e-12

@@ -31,7 +31,7 @@ from .solids.rib_surface import RibShape, rib_surface
 from .solids.shell_solid import thicken
 from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
-from .surfaces.normals import normals_at
+from .surfaces.normals import upright_normals
 from .surfaces.polygons import polygons_of
 from .surfaces.surface_places import compact_points, on_whole_surface, surface_points
 
@@ -271,7 +271,7 @@ def _places(mesh: Any, cells: Any) -> tuple[Reals, Reals]:
     faces, barycentric = cells.sites.faces, cells.sites.barycentric
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
-    return positions, normals_at(vertices, triangles, faces, barycentric)
+    return positions, upright_normals(vertices, triangles, faces, barycentric)
 
 
 def _flow(

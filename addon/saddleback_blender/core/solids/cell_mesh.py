@@ -270,12 +270,16 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
 
 
 def _way_to_middle(distance: Floats, triangles: Ints, cells: Ints, shape: CellShape) -> Floats:
-    """How far (V,) from its cell's rim to the place farthest from it each vertex is: 0 to 1. O(m)."""
+    """How far (V,) from its cell's rim to the place farthest from it each vertex is: 0 to 1. O(m).
+
+    A cell that is all of its part of the mesh has no rim: it is as high as the farthest place all over.
+    """
     farthest = np.zeros(int(cells.max(initial=0)) + 1)
     np.maximum.at(farthest, np.repeat(cells, 3), distance[triangles].ravel())
     start = _of_each(shape.rim_start, triangles, cells, len(distance))
     room = _of_each(farthest, triangles, cells, len(distance)) - start
-    within: Floats = (distance - start) / np.maximum(room, 1e-300)
+    within: Floats = np.ones(len(distance))
+    np.divide(distance - start, np.maximum(room, 1e-300), out=within, where=np.isfinite(room))
     return np.clip(within, 0.0, 1.0)
 
 

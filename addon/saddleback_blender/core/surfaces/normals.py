@@ -7,6 +7,9 @@ import numpy as np
 
 from ..results import Indices, Reals
 
+FLAT = np.cos(np.radians(8.0))  # a face that leaves the mixed normal by more is seen as flat
+ON_EDGE = 1e-6  # barycentric: what is nearer to an edge stands on all the faces there
+
 
 def normals_at(vertices: Reals, triangles: Indices, faces: Indices, barycentric: Reals) -> Reals:
     """(n, 3) unit normals at surface points: vertex normals (area-weighted) mixed as the points lie in their faces.
@@ -28,6 +31,19 @@ def normals_at(vertices: Reals, triangles: Indices, faces: Indices, barycentric:
     if lost.any():
         a, b, c = (vertices[corners[lost, i]] for i in range(3))
         normals[lost] = _unit(np.cross(b - a, c - a))
+    return normals
+
+
+def upright_normals(vertices: Reals, triangles: Indices, faces: Indices, barycentric: Reals) -> Reals:
+    """(n, 3) unit normals as `normals_at`, but of the faces themselves where these are so large that it matters.
+
+    What is flat would stand aslant on a face of a cube by its mixed normals, one half of it below the face.
+    """
+    normals = normals_at(vertices, triangles, faces, barycentric)
+    a, b, c = (vertices[triangles[faces, i]] for i in range(3))
+    own = _unit(np.cross(b - a, c - a))
+    is_flat = own.any(axis=1) & ((own * normals).sum(axis=1) < FLAT) & (barycentric.min(axis=1) > ON_EDGE)
+    normals[is_flat] = own[is_flat]
     return normals
 
 
