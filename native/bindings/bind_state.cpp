@@ -105,6 +105,7 @@ void bind_states(py::module_& m) {
   let_travel<BakedCells>(m, "BakedCells");
   let_travel<RelaxationStep>(m, "RelaxationStep");
   let_travel<ClippedCells>(m, "ClippedCells");
+  let_travel<AreaWeights>(m, "AreaWeights");
   let_travel<Balance2d>(m, "Balance2d");
   let_travel<Relaxation2d>(m, "Relaxation2d");
   let_travel<SteppedSweep::Event>(m, "SweepEvent");

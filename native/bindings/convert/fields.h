@@ -95,6 +95,10 @@ inline auto fields_of(ClippedCells& of) {
   auto& [points, loop_offsets, loop_sites, areas, centroids] = of;
   return std::tie(points, loop_offsets, loop_sites, areas, centroids);
 }
+inline auto fields_of(AreaWeights& of) {
+  auto& [weights, shares, error, lacks, iterations, converged, stop_reason] = of;
+  return std::tie(weights, shares, error, lacks, iterations, converged, stop_reason);
+}
 inline auto fields_of(Balance2d& of) {
   auto& [sites, weights, shares, capacity_error, energy, iterations, converged, stop_reason] = of;
   return std::tie(sites, weights, shares, capacity_error, energy, iterations, converged, stop_reason);

@@ -24,6 +24,8 @@ PROTOCOLS = range(pickle.HIGHEST_PROTOCOL + 1)
 # What is measured anew where an object is made.
 DIARIES = {"build_seconds", "query_times", "device_times"}
 
+SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
+
 
 def made() -> dict[str, Any]:
     """An object of every class that travels."""
@@ -35,7 +37,7 @@ def made() -> dict[str, Any]:
     laid = sb.distribute(mesh, [sb.Shape.star(), sb.Shape.disk()], [2, 1], size=0.1, seed=3)
     rng = np.random.default_rng(0)
     sites = rng.random((30, 2))
-    diagram = sb.voronoi_2d(sites, 0.05 * rng.random(30), [(0, 0), (1, 0), (1, 1), (0, 1)])
+    diagram = sb.voronoi_2d(sites, 0.05 * rng.random(30), SQUARE)
     chart = sb.Chart(mesh, mesh.vertices[:, :2])
     corners = np.array([[(0.1, 0.1), (0.9, 0.1), (0.1, 0.9)]] * mesh.face_count).reshape(-1, 2)
     sweep = sb.SweepCircle(sites, (0.5, 0.5))
@@ -69,7 +71,10 @@ def made() -> dict[str, Any]:
         diagram,
         diagram.clipped,
         sweep.step(),
-        sb.relax_2d(sites, [(0, 0), (1, 0), (1, 1), (0, 1)], max_iterations=3),
+        sb.relax_2d(sites, SQUARE, max_iterations=3),
+        sb.balance_2d(sites, SQUARE, max_iterations=2),
+        sb.weights_for_areas(sites[:9], SQUARE),
+        sb.periodic_voronoi_2d(sites),
         chart,
         chart.lift(sb.voronoi_2d(mesh.vertices[[3, 30, 70], :2])),
         field,
