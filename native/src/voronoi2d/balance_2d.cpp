@@ -219,13 +219,15 @@ class Balancer {
     }
   }
 
-  /// Returns a place of a cell to one side of its center, half as far as its mass is from there.
+  /// Returns a place of a cell to one side of its center, less far than its mass is from there.
   Vec2 off_center(const RasterMoments& cell, Index number, int round) const {
     const Vec2 center = cell.first / cell.mass;
     const double spread = std::sqrt(std::max(0.0, cell.squared / cell.mass - center.squaredNorm()));
-    constexpr double k_golden_turn = 2.399963229728653;
-    const double turn = k_golden_turn * (number % 1024 + 7 * round);
-    return integral_.middle() + center + 0.5 * spread * Vec2(std::cos(turn), std::sin(turn));
+    // Steps by these shares of the unit square are evenly spread, and take no sine, which platforms round differently.
+    constexpr double k_step_x = 0.7548776662466927, k_step_y = 0.5698402909980532;
+    const double steps = number % 1024 + 7 * round;
+    const auto off = [&](double step) { return steps * step - std::floor(steps * step) - 0.5; };
+    return integral_.middle() + center + spread * Vec2(off(k_step_x), off(k_step_y));
   }
 
   /// Moves sites towards the centers of their cells, so far that none loses its cell. The energy of the cells that
