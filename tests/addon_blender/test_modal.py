@@ -125,7 +125,7 @@ def test_the_panel_measures_from_the_cursor_and_shows_it(item):
     """The first press on a mesh just added, all of which is selected."""
     select(item, range(len(item.data.vertices)))
     settings = item.saddleback.distance
-    assert (settings.sources, settings.make_isolines, settings.make_preview) == ("CURSOR", True, True)
+    assert (settings.sources, settings.make_isolines, settings.make_preview) == ("CURSOR_PARTS", True, True)
     operator, context = press(SADDLEBACK_OT_distance, DistanceSettings(), k=10)
     operator.invoke(context, None)
     assert run_to_end(operator, context) == {"FINISHED"}

@@ -91,6 +91,23 @@ def test_the_cursor_is_a_source():
     np.testing.assert_allclose(distances(item), exact, rtol=0.015, atol=1e-6)
 
 
+def test_the_cursor_reaches_each_part():
+    vertices, quads = grid_arrays(8, 1.0)
+    away = np.asarray(vertices) + (3.0, 0.0, 0.0)
+    item = add_object("Two", np.concatenate([vertices, away]), [*quads, *(np.asarray(quads) + len(vertices))])
+    bpy.context.scene.cursor.location = (-1.0, 0.0, 2.0)
+    bpy.ops.saddleback.distance(sources="CURSOR_PARTS", make_isolines=True)
+    places, found = positions(item.data), distances(item)
+    for part in (places[:, 0] < 2, places[:, 0] >= 2):
+        nearest = places[part][np.linalg.norm(places[part] - (-1.0, 0.0, 2.0), axis=1).argmin()]
+        np.testing.assert_allclose(found[part], np.linalg.norm(places[part] - nearest, axis=1), rtol=0.015, atol=1e-6)
+    whole = grid(n=16)
+    bpy.context.scene.cursor.location = (0.3, 0.2, 3.0)
+    bpy.ops.saddleback.distance(sources="CURSOR_PARTS")  # of one part just the place itself
+    exact = np.linalg.norm(positions(whole.data)[:, :2] - (0.3, 0.2), axis=1)
+    np.testing.assert_allclose(distances(whole), exact, rtol=0.015, atol=1e-6)
+
+
 def test_exact_distances():
     item = grid(n=16)
     select(item, [0])

@@ -132,6 +132,8 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
     sources = request.sources
     if not isinstance(sources, tuple):
         sources = compact_points(surface, sources, "source")
+        if settings.sources == "CURSOR_PARTS":
+            sources = _nearest_of_parts(surface, sources)
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
     # Exact distances need no graph; curves are joined on the surface by one, and a quick one will do for that.
@@ -166,6 +168,19 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
     progress.check()
     isolines = _isolines(surface, values, settings, progress) if settings.make_isolines else None
     return DistanceResult(surface.spread(values, np.inf, values), isolines)
+
+
+def _nearest_of_parts(surface: Surface, place: Points) -> Points:
+    """Of each part of a surface its vertex nearest to a place (1, 3); of one part the place itself."""
+    parts = native.load().connected_parts(surface.triangles, len(surface.vertices))
+    if not parts.any():
+        return place
+    part_of = np.full(len(surface.vertices), -1, np.int32)
+    part_of[surface.triangles] = parts[:, None]
+    order = np.argsort(((surface.vertices - place[0]) ** 2).sum(axis=1), kind="stable")
+    order = order[part_of[order] >= 0]
+    first: Points = order[np.unique(part_of[order], return_index=True)[1]].astype(np.int32)
+    return first
 
 
 def _digest_of(sources: Points | tuple[Polyline, ...], limit: float) -> str:

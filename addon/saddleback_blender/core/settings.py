@@ -133,7 +133,7 @@ class TessellateSettings(DensitySettings, PatternSettings, BarrierSettings):
 class DistanceSettings(RegionSettings, BarrierSettings):
     """All properties of `saddleback.distance`; lengths are world units, objects are given by name ("" = none)."""
 
-    sources: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURVES, CURSOR
+    sources: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURVES, CURSOR, CURSOR_PARTS
     sources_group: str = ""
     sources_collection: str = ""
     sources_object: str = ""  # the curve object of CURVES

@@ -26,7 +26,7 @@ def inputs_of(source: bpy.types.Object) -> set[tuple[str, str]]:
             found.append(block)
             if isinstance(block, bpy.types.Collection):
                 found += block.all_objects
-        if "CURSOR" in (getattr(group, "sources", ""), getattr(group, "points", "")):
+        if {"CURSOR", "CURSOR_PARTS"} & {getattr(group, "sources", ""), getattr(group, "points", "")}:
             found += [scene for scene in bpy.data.scenes if scene.user_of_id(source)]
     found += [item for item in source.children if SOURCE not in item]
     found += [item.data for item in found if isinstance(item, bpy.types.Object)]

@@ -34,6 +34,7 @@ DISTANCE_SOURCES = (
         "A curve, those of a collection or those parented to the object, brought to the surface",
     ),
     ("CURSOR", "3D Cursor", "The point of the surface nearest to the 3D cursor"),
+    ("CURSOR_PARTS", "3D Cursor, Each Part", "Of each part of the surface the point nearest to the 3D cursor"),
 )
 ISOLINES_BY = (
     ("COUNT", "Count", "So many lines between the sources and the farthest point"),
@@ -75,7 +76,7 @@ DISTANCE: dict[str, Any] = {
     **BARRIERS,
 }
 DISTANCE_BEGIN: dict[str, Any] = {
-    "sources": "CURSOR",
+    "sources": "CURSOR_PARTS",
     "use_modifiers": True,
     "make_isolines": True,
     "make_preview": True,

@@ -43,7 +43,7 @@ def read_sources(
         return empty_points(context, source, settings.sources_collection)
     if settings.sources == "CURVES":
         return read_curves(source, settings.sources_object, settings.sources_collection)
-    if settings.sources == "CURSOR":
+    if settings.sources in ("CURSOR", "CURSOR_PARTS"):
         return cursor_point(context)
     vertices = selected_vertices(source, mesh)
     return _some(
