@@ -146,17 +146,8 @@ class Balancer {
 
   bool is_met(const State& state) const { return state.error <= options_.capacity_tolerance; }
 
+  double scaled_energy(const State& state) const { return voronoi2d::energy_of(state.sites, state.cells, integral_); }
   double energy_of(const State& state) const { return std::ldexp(scaled_energy(state), integral_.exponent()); }
-
-  double scaled_energy(const State& state) const {
-    double energy = 0;
-    for (std::size_t i = 0; i < state.sites.size(); ++i) {
-      const Vec2 site = state.sites[i] - integral_.middle();
-      const RasterMoments& cell = state.cells[i];
-      energy += cell.squared - 2 * site.dot(cell.first) + site.squaredNorm() * cell.mass;
-    }
-    return energy;
-  }
 
   /// Returns Kantorovich's functional, which is concave in the weights: its slope is what the cells lack.
   double dual_energy(const State& state) const {

@@ -12,6 +12,7 @@ namespace saddleback {
 namespace {
 
 using voronoi2d::check_density;
+using voronoi2d::energy_of;
 using voronoi2d::moments_of;
 using voronoi2d::RasterIntegral;
 using voronoi2d::RasterMoments;
@@ -42,11 +43,7 @@ State evaluate(std::vector<Vec2> sites, const PlanarDomain& domain, const Raster
   const ClippedCells cells = diagram.clip(domain, {.threads = threads}, stage.part(0.5, 0.8));
   State state{std::move(sites), {}, 0};
   state.moments = moments_of(cells, static_cast<Index>(state.sites.size()), integral, threads, stage);
-  for (std::size_t i = 0; i < state.sites.size(); ++i) {
-    const Vec2 site = state.sites[i] - integral.middle();
-    const RasterMoments& cell = state.moments[i];
-    state.energy += cell.squared - 2 * site.dot(cell.first) + site.squaredNorm() * cell.mass;
-  }
+  state.energy = energy_of(state.sites, state.moments, integral);
   stage.update(1);
   return state;
 }

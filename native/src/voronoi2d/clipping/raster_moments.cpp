@@ -125,6 +125,15 @@ std::vector<RasterMoments> moments_of(const ClippedCells& cells, Index count, co
   return result;
 }
 
+double energy_of(std::span<const Vec2> sites, std::span<const RasterMoments> cells, const RasterIntegral& integral) {
+  double energy = 0;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Vec2 site = sites[i] - integral.middle();
+    energy += cells[i].squared - 2 * site.dot(cells[i].first) + site.squaredNorm() * cells[i].mass;
+  }
+  return energy;
+}
+
 void check_density(const DensityRaster& density) {
   if (density.values.empty()) return;
   const auto& values = density.values;

@@ -65,6 +65,9 @@ class RasterIntegral {
 std::vector<RasterMoments> moments_of(const ClippedCells& cells, Index count, const RasterIntegral& integral,
                                       int threads, const JobStage& stage);
 
+/// Integrates the squared distance to the site of each cell.
+double energy_of(std::span<const Vec2> sites, std::span<const RasterMoments> cells, const RasterIntegral& integral);
+
 /// \throw InputError for a wrong number of values, and for values that are negative or not finite.
 void check_density(const DensityRaster& density);
 
