@@ -246,15 +246,15 @@ def test_scales_leave_no_skin_bare_and_meet_only_where_they_overlap(look, make):
     item = bpy.context.active_object
     item.modifiers.new("Smooth", "SUBSURF").levels = 2
     apply(look)
-    if make == "monkey" and look == "SCALES":  # in its folds, not to cross costs more skin
-        assert not passing_pairs(find_output(item, "shapes"))
-        bpy.ops.saddleback.distribute(overlap=0.6, no_crossings=False)
-        assert passing_pairs(find_output(item, "shapes")) > 100  # so the count can fail
-    elif look == "SCALES":
-        assert not passing_pairs(find_output(item, "shapes"))
-    assert bare_share(item, find_output(item, "shapes")) < 0.02
+    shown = find_output(item, "shapes")
+    assert bare_share(item, shown) < 0.02
+    if look == "SCALES":
+        assert not passing_pairs(shown)
     assert bpy.ops.saddleback.check_distribution() == {"FINISHED"}
     assert "none touches another" in jobs.state.line  # of what is not overlapped
+    if look == "SCALES":
+        bpy.ops.saddleback.distribute(no_crossings=False)
+        assert passing_pairs(find_output(item, "shapes")) > 100  # so the count can fail
 
 
 def test_a_tip_stands_higher_than_a_root_by_the_tilt():
