@@ -137,6 +137,12 @@ def test_native_headers_know_neither_python_nor_openmesh():
             assert not re.search(r"#include\s*[<\"]OpenMesh", text), f"{source}: OpenMesh stays in mesh/"
 
 
+def test_hypotenuses_are_measured_alike_on_every_system():
+    """std::hypot rounds as the system's library does, and glibc's own since 2.35 shuts out older systems."""
+    for source in [*(ROOT / "native/include").rglob("*.h"), *(ROOT / "native/src").rglob("*.*")]:
+        assert "std::hypot(" not in source.read_text(encoding="utf-8"), f"{source}: support/hypotenuse.h has it"
+
+
 ROOMS = ROOT / "native/src"
 # From the ground up: a subfolder includes itself and those before it.
 SUBFOLDERS = {

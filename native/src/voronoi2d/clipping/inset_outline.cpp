@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/hypotenuse.h"
 #include "support/planar.h"
 
 namespace saddleback::voronoi2d {
@@ -41,7 +42,7 @@ struct Beside {
 double first_parameter(const Bisector& curve, double distance) {
   const double p = -curve.p_length(), q = curve.q_length();
   if (!(p > 0) || !(distance * p > q * q)) return 0;
-  const double length = std::hypot(p, q), crossing = distance * (p / q);
+  const double length = hypotenuse(p, q), crossing = distance * (p / q);
   return std::asinh(std::sqrt((crossing - q) / length) * std::sqrt((crossing + q) / length));
 }
 
@@ -70,7 +71,7 @@ void add_far_corners(const Bisector& curve, double reach, Loop& loop) {
 Loop inset_outline(const Bisector& curve, double distance, double tolerance, const Vec2& center, double radius) {
   // The curve leaves the middle of its sites at least as fast as its half focal distance times sinh t.
   const double reach = 2 * ((center - curve.middle()).norm() + radius + distance);
-  const double last = std::asinh(reach / std::hypot(curve.p_length(), curve.q_length()));
+  const double last = std::asinh(reach / hypotenuse(curve.p_length(), curve.q_length()));
   const double first = first_parameter(curve, distance);
   if (first >= last) return {};
   constexpr double k_finest = 0x1p-40;  // also where the tolerance is less than any double
