@@ -148,15 +148,18 @@ def sides(mesh: sb.Mesh, points: sb.SurfacePoints, places: Floats, before: int, 
 
 
 def assert_tight(mesh: sb.Mesh, points: sb.SurfacePoints, closed: bool) -> None:
-    """Neither side has less than pi, in all places that are apart."""
+    """Neither side has less than pi, in all places that are apart, but for what the coordinates are rounded by."""
     places = points.positions(mesh)
-    apart = np.linalg.norm(np.diff(places, axis=0, append=places[:1]), axis=1) > 1e-6 * longest_edge(mesh)
+    lengths = np.linalg.norm(np.diff(places, axis=0, append=places[:1]), axis=1)
+    apart = lengths > 1e-6 * longest_edge(mesh)
+    rounding = 4 * np.spacing(np.abs(mesh.vertices).max())
     count = len(points)
     for i in range(0 if closed else 1, count if closed else count - 1):
         if not (apart[i - 1] and apart[i]):
             continue
         found = sides(mesh, points, places, (i - 1) % count, i, (i + 1) % count)
-        assert min(found) >= np.pi - SLACK, f"point {i} of {count}: {found}"
+        slack = SLACK + rounding / min(lengths[i - 1], lengths[i])
+        assert min(found) >= np.pi - slack, f"point {i} of {count}: {found}"
 
 
 def is_shapely(mesh: sb.Mesh) -> bool:
@@ -193,6 +196,28 @@ def tight_curves(mesh: sb.Mesh, rng: Random) -> None:
     np.testing.assert_allclose(integrals(mesh, forms, tight.surface, closed), wound, atol=1e-8)
     assert_tight(mesh, tight.surface, closed)
     assert not (closed and is_convex_and_flat(mesh))
+
+
+@guards("SaddleVertexGraph.path", "ExactField.distance_to")
+def straightened_paths(mesh: sb.Mesh, rng: Random) -> None:
+    """By graphs however coarse, between points anywhere: ways over the surface with pi on both sides of every point,
+    neither longer than the graph's nor shorter than the exact distance.
+    """
+    if not is_shapely(mesh):
+        return
+    rule = random_rule(mesh, rng) if rng.random() < 0.5 else {"k": int(rng.integers(1, 5))}
+    graph = sb.SaddleVertexGraph(mesh, threads=1, **rule)
+    own = np.flatnonzero(mesh.components[mesh.triangles[:, 0]] == rng.integers(mesh.component_count))
+    points = random_points(mesh, rng, 5, own)
+    if rng.random() < 0.5:  # from a vertex, which may be one of the boundary
+        points = sb.SurfacePoints(points.faces, np.concatenate([np.eye(3)[:1], points.barycentric[1:]]))
+    exact = sb.ExactField(mesh, points[0]).distance_to(points)
+    places = points.positions(mesh)
+    for i in range(1, len(points)):
+        path, plain = (graph.path(points[0], points[i], shorten=shorten) for shorten in (True, False))
+        assert_is_way(path, mesh, places[0], places[i])
+        assert exact[i] * (1 - 1e-9) - 1e-12 * longest_edge(mesh) <= path.length <= plain.length * (1 + 1e-12)
+        assert_tight(mesh, path.surface, closed=False)
 
 
 def halved(polygon: Floats, halvings: int) -> Floats:

@@ -112,8 +112,9 @@ bool PathShortener::go_round(const Joint& joint, Side side) {
   };
   Index from = in.entered.empty() ? beside(joint.before, true) : Mesh::prev(in.entered.back());
   const Index to = out.entered.empty() ? beside(joint.after, false) : Mesh::prev(mesh_.twin(out.entered.front()));
-  const double total = mesh_.total_angle(vertex);
-  if (std::abs(std::remainder(in.end_angle - out.start_angle, total)) <= k_straight) {
+  const double total = mesh_.total_angle(vertex), turn = in.end_angle - out.start_angle;
+  // On a boundary the first direction and the last are not the same.
+  if (std::abs(mesh_.is_boundary(vertex) ? turn : std::remainder(turn, total)) <= k_straight) {
     // Straight back nothing is between, but an edge along which both pieces run: on either side of it.
     if (from == to || in.entered.empty() || out.entered.empty()) return true;
     for (const Index entered : {mesh_.twin(from), mesh_.rotate(from)}) {

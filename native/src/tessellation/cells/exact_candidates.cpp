@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "tessellation/bisectors/face_partition.h"
+
 namespace saddleback {
 namespace {
 
@@ -55,24 +57,26 @@ double distance_at(const FaceRefinement::Part& part, const FaceCandidate& candid
   return std::sqrt(std::max(0.0, squared));
 }
 
-/// Places beside the bisectors in a part, on all sides of them; barycentric in the part.
+/// Places that show who owns what in a part, barycentric: beside the ends of the bisectors, on all sides of them, and
+/// in the middle of each site's piece, however thin it is.
 std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidates) {
   constexpr double k_aside = 0.1;
-  std::vector<EdgeLine> lines;
-  std::vector<EdgePiece> pieces;
-  std::vector<Vec3> on_bisectors, places;
-  for (Index side = 0; side < 3; ++side) {
-    lines.clear();
-    for (const FaceCandidate& candidate : candidates) lines.push_back(candidate.line_along(side));
-    lower_envelope(lines, pieces);
-    for (std::size_t i = 1; i < pieces.size(); ++i)
-      on_bisectors.push_back((1 - pieces[i].begin) * Vec3::Unit(side) + pieces[i].begin * Vec3::Unit((side + 1) % 3));
+  std::vector<FacePlane> planes;
+  for (const FaceCandidate& candidate : candidates) planes.push_back({candidate.site, candidate.squared_distance});
+  FacePartition partition;
+  std::vector<Vec3> places;
+  if (!partition.build(planes)) return places;  // distances so unlike that no place says more than the corners do
+  const std::vector<FacePartition::Vertex>& vertices = partition.vertices();
+  std::vector<std::uint8_t> is_placed(vertices.size(), 0);
+  for (const FacePartition::Piece& piece : partition.pieces()) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : piece.loop) {
+      middle += vertices[v].barycentric / static_cast<double>(piece.loop.size());
+      if (vertices[v].side == FacePartition::k_corner || is_placed[v]++) continue;
+      for (int i = 0; i < 3; ++i) places.push_back((1 - k_aside) * vertices[v].barycentric + k_aside * Vec3::Unit(i));
+    }
+    places.push_back(middle);
   }
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& place : on_bisectors) middle += place / static_cast<double>(on_bisectors.size());
-  if (!on_bisectors.empty()) on_bisectors.push_back(middle);
-  for (const Vec3& place : on_bisectors)
-    for (int i = 0; i < 3; ++i) places.push_back((1 - k_aside) * place + k_aside * Vec3::Unit(i));
   return places;
 }
 
