@@ -17,7 +17,8 @@
 namespace saddleback {
 namespace {
 
-constexpr double k_hit = 1e-9;  // relative to the length: a geodesic this near to its aim has met it
+constexpr double k_hit = 1e-9;         // relative to the length: a geodesic this near to its aim has met it
+constexpr double k_same_sheet = 1e-6;  // barycentric: nearer to an edge than that a point is in both faces beside it
 constexpr int k_most_shots = 20;
 
 /// The place where a dual edge crosses the boundary, the distance of its sites from there, and the direction of the
@@ -75,8 +76,10 @@ Miss miss_of(const Mesh& mesh, const TraceEnd& end, const SurfacePoint& target) 
 bool aim(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& target, double& angle, double& length) {
   double before = std::numeric_limits<double>::infinity();
   for (int shot = 0; shot < k_most_shots; ++shot) {
-    const Miss miss = miss_of(mesh, trace_end(mesh, from, angle, length), target);
-    if (miss.distance <= k_hit * length) return true;
+    const TraceEnd end = trace_end(mesh, from, angle, length);
+    const Miss miss = miss_of(mesh, end, target);
+    // Where the surface passes through itself, what is near in space may be on another sheet.
+    if (miss.distance <= k_hit * length) return shared_face(mesh, end.point, target, k_same_sheet) != k_none;
     if (!(miss.distance < before)) return false;
     before = miss.distance;
     angle += std::atan2(miss.left, length + miss.ahead);
