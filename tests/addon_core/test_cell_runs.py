@@ -12,7 +12,7 @@ from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.cell_runs import cells_of, directions
 from saddleback_blender.core.figures import cell_faults_of, lost_of
 from saddleback_blender.core.solids.cell_mesh import CellShape
-from saddleback_blender.core.solids.crossings import find_crossings
+from saddleback_blender.core.solids.crossings import find_crossings, is_deep
 from saddleback_blender.core.surfaces.normals import normals_at
 from tests import synthetic_cells
 
@@ -56,6 +56,41 @@ def test_cells_over_ruffles_do_not_cross():
     """Heights like the waves': normals alone would cross by thousands."""
     _, cells = made(ruffled(0.03), CellShape(gap=0.012, inset=0.015, thickness=0.03))
     assert not len(find_crossings(cells.vertices, cells.triangles)) and not len(cells.crossing)
+
+
+def pebbles(places: np.ndarray, triangles: np.ndarray, count: int, seed: int):
+    """Round cells with the lengths of the look, on vertices as Blender stores them."""
+    mesh = sb.Mesh(places.astype(np.float32).astype(np.float64), triangles)
+    size = np.sqrt(mesh.area / count)
+    cells = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=40), count=count, max_iterations=12, seed=seed).cells
+    shape = CellShape(0.08 * size, 0.24 * size, 0.24 * size, dome=1.0)
+    return cells_of(mesh, cells.split(), shape, ("test",), runs.new_progress(), Cache(2**28))
+
+
+@pytest.mark.parametrize("seed", [3, 6])
+def test_pebbles_on_a_flat_sheet_have_room_though_needles_turn_over_when_rounded(seed):
+    made_ones = pebbles(*synthetic_cells.grid(61, 61), count=200, seed=seed)
+    assert not len(made_ones.crossing) and not len(made_ones.thinner)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 7])
+def test_pebbles_on_a_roll_become_as_low_as_they_must(seed):
+    places, triangles = synthetic_cells.grid(61, 61)
+    around = 4.0 * places[:, 0]
+    rolled = np.column_stack([0.25 * np.cos(around), 0.25 * np.sin(around), places[:, 1]])
+    assert not len(pebbles(rolled, triangles, count=100, seed=seed).crossing)
+
+
+def test_crossings_deeper_than_rounding_are_told_from_others():
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+    for depth, deep in ((1e-3, True), (1e-5, True), (2e-7, False)):
+        through = np.array([[0.2, 0.2, -depth], [0.3, 0.2, 0.5], [0.2, 0.3, 0.5]])
+        vertices, triangles = np.concatenate([corners, through]), np.arange(6, dtype=np.int32).reshape(2, 3)
+        pairs = find_crossings(vertices, triangles)
+        assert pairs.tolist() == [[0, 1]] and is_deep(vertices, triangles, pairs).tolist() == [deep]
+        assert is_deep(1e-3 * vertices, triangles, pairs).tolist() == [deep]
+        is_far = is_deep(vertices + 2000.0, triangles, pairs).tolist()
+        assert is_far == [depth > 5e-4]
 
 
 def test_a_surface_that_crosses_itself_is_told_and_does_not_take_for_ever():

@@ -17,11 +17,11 @@ from .. import native
 from ..progress import Progress
 from ..results import CellMesh
 from .boundary_distance import find_boundary
-from .cell_solid import raise_surface
-from .crossings import find_crossings
+from .cell_solid import Raised, raise_surface
+from .crossings import find_crossings, is_deep
 from .directions import Neighbors
 from .level_cut import Cut, cut_at_level, open_chords, split_edges
-from .room import Solid, fit
+from .room import Solid, beside, fit, has_any
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -39,7 +39,7 @@ MANY_LEVELS, LEAST_LEVEL = 4, 0.02
 LEAST_FACTOR = 0.01  # paint that is fainter is none: slopes and joints of such cells would be thinner than rounding
 END = 0.99  # of the run's progress
 # A place without room becomes lower by this factor, down to a share of the height that could as well be flat.
-THINNER, LEAST_SHARE, PATIENCE = 0.5, 0.02, 4
+THINNER, LEAST_SHARE, PATIENCE = 0.5, 0.001, 8
 LOWER = 0.99  # of its height: a place that is lower than that is told
 CRUMB = 0.02  # of a cell's largest piece: what the gap leaves of a ragged tip that is smaller goes, too
 
@@ -256,17 +256,35 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
             height = (1.0 - shape.dome) * height + shape.dome * _dome_share(fields[:, WITHIN], triangles, progress)
         height = _of_each(shape.height, triangles, cells, len(fields)) * height
         raised = raise_surface(fields[:, :6], triangles, height, shape.underside)
-        solid = Solid(raised.triangles, raised.place, len(raised.base), raised.at, THINNER, LEAST_SHARE, PATIENCE)
-        fitted = fit(solid, find_crossings, END, "making room for the cells", progress)
         owner = cells[raised.parent]
-        thinner = np.unique(owner[(fitted.share < LOWER)[raised.place[raised.triangles]].any(axis=1)])
+        above, thinner, crossing = _with_room(raised, owner, progress)
         feet = raised.base[raised.place]
-        placed, triangles = drop_unused(np.column_stack([fitted.vertices, feet]), raised.triangles)
+        placed, triangles = drop_unused(np.column_stack([above, feet]), raised.triangles)
         vertices, feet = np.ascontiguousarray(placed[:, :3]), np.ascontiguousarray(placed[:, 3:])
-        return CellMesh(vertices, feet, triangles, owner, vanished, thinner, np.unique(owner[fitted.crossing]))
+        return CellMesh(vertices, feet, triangles, owner, vanished, thinner, crossing)
     positions, triangles = drop_unused(fields[:, POSITION], triangles)
     none = np.empty(0, np.int32)
     return CellMesh(positions, positions, triangles, cells, vanished, none, none)
+
+
+def _with_room(raised: Raised, owner: Ints, progress: Progress) -> tuple[Floats, Ints, Ints]:
+    """The vertices where there is room for them, and which of the triangles' cells (m,) are lower for want of it, and
+    which still cross. Of what crosses by rounding alone nothing is told, though it is lowered, too.
+    """
+    solid = Solid(raised.triangles, raised.place, len(raised.base), raised.at, THINNER, LEAST_SHARE, PATIENCE)
+    surface, deep = raised.place[raised.triangles], np.empty((0, 2), np.int32)
+    has_no_room = np.zeros(solid.count, np.bool_)
+
+    def find(vertices: Floats, triangles: Ints, among: Ints, job: object) -> Ints:
+        nonlocal deep
+        pairs = find_crossings(vertices, triangles, among, job)
+        deep = pairs[is_deep(vertices, triangles, pairs)]
+        has_no_room[beside(surface, np.unique(surface[deep]), solid.count)] = True
+        return pairs
+
+    fitted = fit(solid, find, END, "making room for the cells", progress)
+    thinner = np.unique(owner[has_any(has_no_room & (fitted.share < LOWER), surface)])
+    return fitted.vertices, thinner, np.unique(owner[deep])
 
 
 def _way_to_middle(distance: Floats, triangles: Ints, cells: Ints, shape: CellShape) -> Floats:

@@ -6,9 +6,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import native
 from ..results import Indices, Reals
+
+# Of the farthest coordinate: what rounding both triangles to single precision may move them against each other.
+ROUNDING = 4.0 * float(np.finfo(np.float32).eps)
 
 
 def find_crossings(vertices: Reals, triangles: Indices, among: Indices | None = None, job: Any = None) -> Indices:
@@ -17,3 +21,22 @@ def find_crossings(vertices: Reals, triangles: Indices, among: Indices | None = 
     """
     found: Indices = native.load().self_crossings(vertices.astype(np.float32), triangles, among, job=job)
     return found
+
+
+def is_deep(vertices: Reals, triangles: Indices, pairs: Indices) -> NDArray[np.bool_]:
+    """Tells which pairs (k, 2) that `find_crossings` found pass through each other by more than rounding explains: each
+    triangle reaches farther beyond the other's plane than coordinates may be off. Needles turn over when rounded.
+    """
+    first, second = (vertices[triangles[side]].astype(np.float32).astype(np.float64) for side in pairs.T)
+    off = ROUNDING * np.abs(vertices).max(initial=0.0)
+    deep: NDArray[np.bool_] = np.minimum(_depth(first, second), _depth(second, first)) > off
+    return deep
+
+
+def _depth(plane: Reals, of: Reals) -> Reals:
+    """How far (k,) the triangles `of` (k, 3, 3) reach to the side of planes (k, 3, 3) on which less of them is."""
+    normal = np.cross(plane[:, 1] - plane[:, 0], plane[:, 2] - plane[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(np.float64).tiny)
+    height = np.einsum("kij,kj->ki", of - plane[:, :1], normal)
+    depth: Reals = np.minimum(height.max(axis=1), -height.min(axis=1))
+    return depth
