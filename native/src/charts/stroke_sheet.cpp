@@ -26,7 +26,7 @@ constexpr double k_increase = 0.1;
 constexpr double k_apart = 4;
 // As a share of the radius: nodes this near to it lie on it.
 constexpr double k_at_radius = 1e-6;
-constexpr int k_most_divisions = 40;
+constexpr int k_most_divisions = 100;
 
 constexpr double k_nowhere = std::numeric_limits<double>::quiet_NaN();
 
@@ -325,13 +325,17 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   const std::vector<Vec3>& at = sheet.positions;
   for (int round = 0; round < k_most_divisions; ++round) {
     stage.check();
+    // Only the longest edge of each triangle, that needles become shorter and not thinner [rivara1984].
     std::unordered_set<std::uint64_t> too_long;
     for (const Triangle& t : sheet.triangles) {
-      const bool is_long =
-          std::max({(at[t[0]] - at[t[1]]).norm(), (at[t[1]] - at[t[2]]).norm(), (at[t[2]] - at[t[0]]).norm()}) > size;
-      if (!is_long || !beads.may_reach(at[t[0]], at[t[1]], at[t[2]])) continue;
-      for (int i = 0; i < 3; ++i)
-        if ((at[t[i]] - at[t[(i + 1) % 3]]).norm() > size) too_long.insert(Sheet::key(t[i], t[(i + 1) % 3]));
+      int longest = 0;
+      std::array<double, 3> length;
+      for (int i = 0; i < 3; ++i) {
+        length[i] = (at[t[i]] - at[t[(i + 1) % 3]]).norm();
+        if (length[i] > length[longest]) longest = i;
+      }
+      if (length[longest] > size && beads.may_reach(at[t[0]], at[t[1]], at[t[2]]))
+        too_long.insert(Sheet::key(t[longest], t[(longest + 1) % 3]));
     }
     if (too_long.empty()) break;
     Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
