@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
-from scenes import add_object, grid, positions, select, sphere
+from scenes import add_object, attribute, grid, positions, select, sphere
 
 from saddleback_blender import finishes, jobs, looks, nodes
 from saddleback_blender.bridge.inputs.mesh_in import read_triangles
@@ -154,6 +154,19 @@ def test_an_object_with_modifiers_shows_no_second_surface():
     apply("PANELS")
     copy = find_output(item, "surface")
     assert copy.hide_viewport and copy.hide_render
+
+
+def test_each_of_more_parts_than_cells_has_cells_but_no_lattice_is_made_of_them():
+    planks = np.arange(230)[:, None, None] * (0.0, 0.0, 0.1) + [[0, 0, 0], [1, 0, 0], [1, 0.1, 0], [0, 0.1, 0]]
+    item = add_object("Planks", planks.reshape(-1, 3).tolist(), np.arange(920).reshape(-1, 4).tolist())
+    assert apply("PANELS") == {"FINISHED"}
+    assert item.saddleback.tessellate.count == 200  # as the look has it
+    cells = attribute(item, "saddleback_cell").reshape(-1, 4)
+    assert (cells >= 0).all() and cells.max() < 430
+    assert len(set(cells[:, 0])) == 230
+    assert "430 cells, so that each part has one" in jobs.state.line
+    with pytest.raises(RuntimeError, match="150 cells cannot cover the mesh's 230 separate parts"):
+        apply("LAMP")
 
 
 def test_what_cannot_be_covered_is_told_in_a_sentence():

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from . import native
 from .errors import BadInputError
 from .requests import Surface
 from .settings import DistributeSettings, TessellateSettings, Voronoi2dSettings
@@ -66,6 +67,12 @@ def count_of_size(surface: Surface, size: float) -> int:
     if count > MOST_CELLS:
         raise BadInputError(f"'{surface.name}' would have {count:,} cells of size {size:g}; make them larger")
     return count
+
+
+def count_for_parts(surface: Surface, count: int) -> int:
+    """The number of cells itself or, where parts of the surface would be without one, one for each part besides."""
+    parts = int(native.load().connected_parts(surface.triangles, len(surface.vertices)).max(initial=-1)) + 1
+    return count if parts <= count else count + parts
 
 
 def told_lengths(

@@ -41,7 +41,7 @@ from ..core.figures import (
     shell_of,
 )
 from ..core.flowing_cells import FlowingCells
-from ..core.lengths import count_of_size
+from ..core.lengths import count_for_parts, count_of_size
 from ..core.live_cells import LiveCells
 from ..core.mirrored_runs import halved
 from ..core.progress import Progress
@@ -78,6 +78,8 @@ def read_request(
     if settings.sites_source == "SIZE":
         settings = replace(settings, sites_source="COUNT", count=count_of_size(surface, settings.cell_size))
     sites = read_sites(context, source, mesh, settings)
+    if sites is None and not settings.make_shell:  # a lattice in pieces is of no use
+        settings = replace(settings, count=count_for_parts(surface, settings.count))
     has_mesh = settings.make_cells and not settings.makes_polygons
     marks = read_marks(mesh) if settings.hold_marked or settings.make_dual else None
     return TessellateRequest(
@@ -101,6 +103,7 @@ class CellsOperator(SurfaceOperator):
     cell_faces: str
     density_source: str
     flowing: FlowingCells | None = None  # cells to go on from
+    _parts = ""  # why there are more cells than asked for
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
@@ -118,6 +121,8 @@ class CellsOperator(SurfaceOperator):
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             request = read_request(context, source, mesh, settings, self.measured)
             mirror = read_mirror(source, mesh, request.surface) if settings.mirror_x else None
+        is_more = request.sites is None and settings.sites_source == "COUNT" and request.settings.count > settings.count
+        self._parts = ", so that each part has one" if is_more else ""
         request = replace(request, live=live, flowing=self.flowing)
         kept = kept_cells(source) if self.flowing is not None and existing_group(source, "tessellate") else None
         if self.flowing is not None and kept is not None:
@@ -165,7 +170,7 @@ class CellsOperator(SurfaceOperator):
         if warning:
             self.report({"WARNING"}, warning)
         shell = "" if result.shell is None else shell_of(result.shell, *_units(context.scene))
-        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(result)}{_added(result)}{shell}"
+        return f"'{source.name}': {result.count} cells{self._parts}{_steps(result)}{_lost(result)}{_added(result)}{shell}"
 
     def lying(self) -> dict[str, bool]:
         """Cells without a height do."""
