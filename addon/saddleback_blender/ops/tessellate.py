@@ -170,7 +170,8 @@ class CellsOperator(SurfaceOperator):
         if warning:
             self.report({"WARNING"}, warning)
         shell = "" if result.shell is None else shell_of(result.shell, *_units(context.scene))
-        return f"'{source.name}': {result.count} cells{self._parts}{_steps(result)}{_lost(result)}{_added(result)}{shell}"
+        done = f"{_steps(result)}{_lost(result)}{_added(result)}{shell}"
+        return f"'{source.name}': {result.count} cells{self._parts}{done}"
 
     def lying(self) -> dict[str, bool]:
         """Cells without a height do."""
