@@ -11,6 +11,7 @@
 #include "geodesics/wavefront/curve_windows.h"
 #include "geodesics/wavefront/directions_at_point.h"
 #include "mesh/cutting/barrier_cuts.h"
+#include "mesh/tables/edge_key.h"
 #include "support/disjoint_sets.h"
 
 namespace saddleback::charts {
@@ -87,7 +88,7 @@ class Divider {
     if (a > b) std::swap(a, b);
     const double share = where(a, b);
     if (!(share > 0)) return k_none;
-    const auto [entry, is_new] = nodes_.try_emplace(Sheet::key(a, b), k_none);
+    const auto [entry, is_new] = nodes_.try_emplace(edge_key(a, b), k_none);
     if (is_new) entry->second = new_node(a, b, share, face);
     return entry->second;
   }
@@ -111,7 +112,7 @@ class Divider {
   }
 
   void wall(Index a, Index b) {
-    if (with_walls_) sheet_.walls.insert(Sheet::key(a, b));
+    if (with_walls_) sheet_.walls.insert(edge_key(a, b));
   }
 
   void divide(const Triangle& t, const std::array<Index, 3>& middles, Index face) {
@@ -168,13 +169,13 @@ class Divider {
     for (std::vector<Index>& line : sheet_.across) line = divided(line);
     for (const auto& [key, node] : nodes_) {
       if (sheet_.walls.erase(key) == 0) continue;
-      sheet_.walls.insert(Sheet::key(static_cast<Index>(key >> 32), node));
-      sheet_.walls.insert(Sheet::key(static_cast<Index>(key & 0xffffffffU), node));
+      sheet_.walls.insert(edge_key(static_cast<Index>(key >> 32), node));
+      sheet_.walls.insert(edge_key(static_cast<Index>(key & 0xffffffffU), node));
     }
   }
 
   Index known_between(Index a, Index b) const {
-    const auto found = nodes_.find(Sheet::key(a, b));
+    const auto found = nodes_.find(edge_key(a, b));
     return found == nodes_.end() ? k_none : found->second;
   }
 
@@ -313,13 +314,12 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
     for (std::size_t k = begins[i]; k < begins[i + 1]; ++k)
       for (const Index node : cuts.line(k + 1))
         if (sheet.across[i].empty() || sheet.across[i].back() != node) sheet.across[i].push_back(node);
-  for (std::size_t i = 1; i < sheet.curve.size(); ++i)
-    sheet.walls.insert(Sheet::key(sheet.curve[i - 1], sheet.curve[i]));
+  for (std::size_t i = 1; i < sheet.curve.size(); ++i) sheet.walls.insert(edge_key(sheet.curve[i - 1], sheet.curve[i]));
   // An edge between two points of the curve would have no width in the map.
   std::vector<std::uint8_t> on_curve(sheet.points.size(), 0);
   for (const Index node : sheet.curve) on_curve[node] = 1;
   Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
-    return on_curve[a] && on_curve[b] && !sheet.walls.contains(Sheet::key(a, b)) ? 0.5 : 0;
+    return on_curve[a] && on_curve[b] && !sheet.walls.contains(edge_key(a, b)) ? 0.5 : 0;
   });
   const Beads beads(curve, radius);
   const std::vector<Vec3>& at = sheet.positions;
@@ -335,11 +335,11 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
         if (length[i] > length[longest]) longest = i;
       }
       if (length[longest] > size && beads.may_reach(at[t[0]], at[t[1]], at[t[2]]))
-        too_long.insert(Sheet::key(t[longest], t[(longest + 1) % 3]));
+        too_long.insert(edge_key(t[longest], t[(longest + 1) % 3]));
     }
     if (too_long.empty()) break;
     Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
-      return too_long.contains(Sheet::key(a, b)) ? 0.5 : 0;
+      return too_long.contains(edge_key(a, b)) ? 0.5 : 0;
     });
   }
   return sheet;
@@ -386,7 +386,7 @@ void measure(Sheet& sheet, bool closed, double length, double reach, const JobSt
       there += (sheet.positions[across[good]] - sheet.positions[across[good - 1]]).norm();
       if (!(sheet.distance[across[good]] >= there * (closed ? k_increase : 1 - k_shortest))) break;
       if (sheet.distance[across[good]] <= sheet.distance[across[good - 1]]) break;
-      sheet.walls.insert(Sheet::key(across[good - 1], across[good]));
+      sheet.walls.insert(edge_key(across[good - 1], across[good]));
     }
     across.resize(good);
   }
@@ -400,7 +400,7 @@ void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length
     double apart = std::abs(sheet.along[a] - sheet.along[b]);
     if (closed) apart = std::min(apart, length - apart);
     if (sheet.side[a] * sheet.side[b] >= 0 && apart <= k_apart * size) return 0;
-    if (sheet.walls.contains(Sheet::key(a, b))) return 0;
+    if (sheet.walls.contains(edge_key(a, b))) return 0;
     // Both distances grow towards the cut locus, at most as fast as one comes nearer.
     return std::clamp(0.5 + (sheet.distance[b] - sheet.distance[a]) / (2 * size), 0.1, 0.9);
   });

@@ -29,13 +29,9 @@ struct Sheet {
   std::vector<double> distance;              ///< from the curve
   std::vector<double> along;                 ///< arc length of the nearest point of the curve; NaN where there are two
   std::vector<std::int8_t> side;             ///< 1 left of the curve, -1 right, 0 on it or on both
-  std::unordered_set<std::uint64_t> walls;   ///< keys of edges across which triangles do not hang together
+  std::unordered_set<std::uint64_t> walls;   ///< edge keys across which triangles do not hang together
   std::vector<Index> curve;                  ///< nodes in order
   std::array<std::vector<Index>, 4> across;  ///< from the ends: start left, start right, end left, end right
-
-  static std::uint64_t key(Index a, Index b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-  }
 };
 
 /// Cuts faces along the curve and, at right angles, across its ends as far as `radius` (across a closed one where it

@@ -5,6 +5,7 @@
 #include <functional>
 #include <queue>
 
+#include "mesh/tables/edge_key.h"
 #include "mesh/tables/edge_table.h"
 #include "support/disjoint_sets.h"
 
@@ -202,7 +203,7 @@ PartedSheet::PartedSheet(const Sheet& sheet, const JobStage& stage) {
     const auto around = edges.edge(e);
     if (around.size() != 2) continue;
     const Index h = around[0], t = around[1];
-    if (sheet.walls.contains(Sheet::key(halfedge_from(sheet.triangles, h), halfedge_to(sheet.triangles, h)))) continue;
+    if (sheet.walls.contains(edge_key(halfedge_from(sheet.triangles, h), halfedge_to(sheet.triangles, h)))) continue;
     twins[h] = t;
     twins[t] = h;
     corners.join(h, next(t));

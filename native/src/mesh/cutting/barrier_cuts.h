@@ -1,7 +1,6 @@
 #pragma once
 // Faces cut along barriers: where curves meet edges, vertices and each other, and the triangles between.
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,6 +11,7 @@
 #include "saddleback/mesh/surface_curve.h"
 
 #include "mesh/cutting/constrained_triangulation.h"
+#include "mesh/tables/edge_key.h"
 
 namespace saddleback {
 
@@ -50,9 +50,6 @@ class BarrierCuts {
     Index face, from, to;
   };
 
-  static std::uint64_t edge_key(Index a, Index b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-  }
   void add_curve(Index curve, const SurfaceCurve& line);
   void add_piece(Index curve, Index face, Index from, Index to);
   void add_given_edge(Index halfedge);
