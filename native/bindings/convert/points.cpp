@@ -54,6 +54,12 @@ const Mesh& as_mesh(const py::object& value, const char* argument) {
   return py::cast<const Mesh&>(value);
 }
 
+const SaddleVertexGraph& as_graph(const py::object& value) {
+  if (!py::isinstance<SaddleVertexGraph>(value))
+    throw InputError(message("graph: wanted a SaddleVertexGraph, got a ", type_of(value)));
+  return py::cast<const SaddleVertexGraph&>(value);
+}
+
 std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
   std::vector<const SurfaceCurve*> result;
   if (curves.is_none()) return result;

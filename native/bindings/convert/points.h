@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "saddleback/geodesics/saddle_vertex_graph.h"
 #include "saddleback/mesh/surface_points.h"
 
 #include "convert/convert.h"
@@ -31,5 +32,8 @@ SurfacePoint as_surface_point(const py::object& value, const Mesh& mesh, const c
 
 /// The mesh of an argument. \throw InputError when it is anything else.
 const Mesh& as_mesh(const py::object& value, const char* argument);
+
+/// The graph of an argument `graph`. \throw InputError when it is anything else.
+const SaddleVertexGraph& as_graph(const py::object& value);
 
 }  // namespace saddleback::bindings

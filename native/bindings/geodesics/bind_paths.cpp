@@ -263,11 +263,6 @@ GeodesicPath shorten_curve(const py::object& curve, const py::object& job) {
   return without_gil([&] { return shortened_curve(given, token); });
 }
 
-const SaddleVertexGraph& as_graph(const py::object& graph) {
-  if (!py::isinstance<SaddleVertexGraph>(graph)) throw InputError("graph: wanted a SaddleVertexGraph");
-  return py::cast<const SaddleVertexGraph&>(graph);
-}
-
 /// A curve keeps its mesh alive.
 py::object curve_of(const py::object& graph, SurfaceCurve&& curve) {
   py::object result = py::cast(std::move(curve));
@@ -346,8 +341,7 @@ SurfacePoints exp_map_of(const py::object& mesh_object, const py::object& center
 
 PolarCoordinates polar_of(const py::object& graph_object, const py::object& curve, const py::object& radius,
                           const py::object& job) {
-  if (!py::isinstance<SaddleVertexGraph>(graph_object)) throw InputError("graph: wanted a SaddleVertexGraph");
-  const auto& graph = py::cast<const SaddleVertexGraph&>(graph_object);
+  const SaddleVertexGraph& graph = as_graph(graph_object);
   const double wanted = as_real(radius, "radius");
   const JobIn token(job);
   if (py::isinstance<SurfaceCurve>(curve)) {

@@ -81,7 +81,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
               const py::object& fixed, const py::object& curves, const py::object& held, const py::object& least_move,
               const py::object& cache, bool closed_ball, bool return_when_cancelled, const py::object& watch,
               const py::object& threads, const std::string& device, const py::object& job) {
-  const auto& g = py::cast<const SaddleVertexGraph&>(graph);
+  const SaddleVertexGraph& g = as_graph(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
   if (!density.is_none()) weights = as_reals(density, "density", g.mesh().vertex_count());

@@ -189,7 +189,7 @@ SurfacePoints corners(const Cells& cells, const py::object& cell) {
 
 py::object find_cells(const py::object& graph, const py::object& sites, bool exact, const py::object& threads,
                       const std::string& device, const py::object& job) {
-  const auto& g = py::cast<const SaddleVertexGraph&>(graph);
+  const SaddleVertexGraph& g = as_graph(graph);
   const SurfacePoints points = as_surface_points(sites, g.mesh(), "sites");
   GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
   const JobIn token(job);
@@ -263,7 +263,7 @@ SurfacePoints centers(const Cells& cells, const py::object& density, const py::o
 
 SurfacePoints center_of_points(const py::object& graph, const py::object& points, const py::object& weights,
                                const py::object& job) {
-  const auto& g = py::cast<const SaddleVertexGraph&>(graph);
+  const SaddleVertexGraph& g = as_graph(graph);
   const SurfacePoints given = as_surface_points(points, g.mesh(), "points");
   ArrayIn<double> shares;
   if (!weights.is_none()) shares = as_reals(weights, "weights", static_cast<Index>(given.size()));
