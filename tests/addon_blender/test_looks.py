@@ -156,6 +156,20 @@ def test_an_object_with_modifiers_shows_no_second_surface():
     assert copy.hide_viewport and copy.hide_render
 
 
+@pytest.mark.parametrize("look", ["REMESH", "QUADS"])
+def test_new_meshes_keep_the_edges_of_a_box(look):
+    bpy.ops.mesh.primitive_cube_add()
+    item = bpy.context.active_object
+    assert apply(look) == {"FINISHED"}
+    made = find_output(item, "dual").data
+    places, triangles = positions(made).astype(float), read_triangles(made)
+    a, b, c = (places[triangles[:, side]] for side in range(3))
+    assert np.einsum("ij,ij->", np.cross(a, b), c) / 6.0 == pytest.approx(8.0, rel=1e-5)
+    assert np.abs(places).max(axis=1) == pytest.approx(1.0, abs=1e-5)
+    on_corners = (np.abs(places) > 1.0 - 1e-5).all(axis=1)
+    assert np.count_nonzero(on_corners) == 8
+
+
 def test_each_of_more_parts_than_cells_has_cells_but_no_lattice_is_made_of_them():
     planks = np.arange(230)[:, None, None] * (0.0, 0.0, 0.1) + [[0, 0, 0], [1, 0, 0], [1, 0.1, 0], [0, 0.1, 0]]
     item = add_object("Planks", planks.reshape(-1, 3).tolist(), np.arange(920).reshape(-1, 4).tolist())
