@@ -127,6 +127,10 @@ class Inputs:
         return sb.direction_field(self.mesh, 1)
 
     @functools.cached_property
+    def lines(self) -> sb.DirectionField:
+        return sb.direction_field(self.mesh, 2)
+
+    @functools.cached_property
     def curve(self) -> sb.SurfaceCurve:
         return sb.SurfaceCurve(self.mesh, self.graph.path(0, self.count // 2).surface)
 
@@ -279,6 +283,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "BarredMesh.to_whole": lambda: at.barred.to_whole(np.arange(100, dtype=np.int32)),
         "BarredMesh.values_to_barred": lambda: at.barred.values_to_barred(at.vertices[:, 0]),
         "add_barriers": lambda: sb.add_barriers(at.mesh, edges=at.mesh.edges[::7], curves=[at.curve]),
+        "anisotropic_metric": lambda: sb.anisotropic_metric(at.mesh, at.lines, 2),
         "arcs_across": lambda: sb.arcs_across(at.parts[0], 1),
         "unite_arcs": lambda **more: sb.unite_arcs(at.parts[0], at.across, **more),
         "SaddleVertexGraph.arcs": lambda: at.graph.arcs(),

@@ -107,6 +107,23 @@ ArrayIn<double> as_points3(const py::object& value, const char* name) {
   return reals(value, name, 3, "shape (n, 3) of real numbers");
 }
 
+ArrayIn<double> as_points(const py::object& value, const char* name) {
+  const std::string wanted = "shape (n, d) of real numbers, d at least 2";
+  const py::array array = as_array(value, name, wanted);
+  if (array.ndim() == 1 && array.size() == 0) return as_points3(array, name);
+  if (array.ndim() != 2 || array.shape(1) < 2) refuse(name, wanted, shape_of(array));
+  return reals(array, name, array.shape(1), wanted);
+}
+
+ArrayIn<double> as_sides(const py::object& value, const char* name, Index face_count) {
+  const std::string wanted = message("shape (", face_count, ", 3) or (edges,) of real numbers");
+  const py::array array = as_array(value, name, wanted);
+  if (array.ndim() != 2) return reals(array, name, 0, wanted);
+  ArrayIn<double> result = reals(array, name, 3, wanted);
+  if (result.count != face_count) refuse(name, wanted, shape_of(array));
+  return result;
+}
+
 ArrayIn<double> as_points2(const py::object& value, const char* name) {
   return reals(value, name, 2, "shape (n, 2) of real numbers");
 }

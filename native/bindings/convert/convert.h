@@ -32,7 +32,10 @@ struct ArrayIn {
 
 // Each throws InputError "NAME: wanted ..., got ...". Reals are any float or integer type; indices any integer type,
 // and every value must fit 32 bits.
-ArrayIn<double> as_points3(const py::object& value, const char* name);             ///< (n, 3) reals
+ArrayIn<double> as_points3(const py::object& value, const char* name);  ///< (n, 3) reals
+ArrayIn<double> as_points(const py::object& value, const char* name);   ///< (n, d) reals, d >= 2
+/// (face_count, 3) or (n,) reals, flat.
+ArrayIn<double> as_sides(const py::object& value, const char* name, Index face_count);
 ArrayIn<double> as_points2(const py::object& value, const char* name);             ///< (n, 2) reals
 ArrayIn<double> as_reals(const py::object& value, const char* name);               ///< (n,) reals
 ArrayIn<double> as_reals(const py::object& value, const char* name, Index count);  ///< (count,) reals
@@ -51,15 +54,6 @@ std::string as_path(const py::object& value, const char* name);
 Job* as_job(const py::object& value);
 /// Tells whether the array-like's elements are integers, which means vertex indices where points are taken.
 bool holds_integers(const py::object& value);
-
-/// The result as a Python object that keeps another one alive. Not py::keep_alive<0, ...>, which pybind11 3.1 also
-/// applies where it has refused the arguments, to a result that is no object.
-template <class T>
-py::object keeping(const py::handle& kept, T&& result) {
-  py::object object = py::cast(std::forward<T>(result));
-  py::detail::keep_alive_impl(object, kept);
-  return object;
-}
 
 /// numpy array that owns the moved vector.
 template <class T>

@@ -6,11 +6,18 @@
 namespace saddleback::bindings {
 namespace {
 
-std::shared_ptr<Mesh> make_mesh(const py::object& vertices, const py::object& triangles, const py::object& job) {
-  const ArrayIn<double> xyz = as_points3(vertices, "vertices");
+std::shared_ptr<Mesh> make_mesh(const py::object& vertices, const py::object& triangles, const py::object& lengths,
+                                const py::object& job) {
+  const ArrayIn<double> xyz = as_points(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  MeshMetric metric{.dimension = static_cast<int>(xyz.array.shape(1))};
+  ArrayIn<double> given;
+  if (!lengths.is_none()) {
+    given = as_sides(lengths, "lengths", indices.count);
+    metric.lengths = given.values;
+  }
   const JobIn watched(job);
-  return without_gil([&] { return std::make_shared<Mesh>(xyz.values, indices.values, watched); });
+  return without_gil([&] { return std::make_shared<Mesh>(xyz.values, indices.values, metric, watched); });
 }
 
 const Mesh& mesh_of(const py::object& self) { return py::cast<const Mesh&>(self); }
@@ -48,10 +55,14 @@ constexpr const char* k_mesh_doc =
 
 Parameters
 ----------
-vertices : array_like of shape (V, 3)
-    Positions; any real number type, kept as float64. Every vertex must belong to a face.
+vertices : array_like of shape (V, d), d >= 2
+    Positions; any real number type, kept as float64. Every vertex must belong to a face. With more than three coordinates
+    edges are as long as in d dimensions, and the first three are kept to show the surface; with two the third is 0.
 triangles : array_like of shape (F, 3)
     Vertex indices of each face, counter-clockwise; any integer type.
+lengths : array_like of shape (F, 3) or (E,), optional
+    A metric of the surface's own: how long the sides of each face are, from corner i to corner i + 1, or the edges, in
+    the order of `edges`. Everything is then measured by them, and `vertices` only show the surface.
 job : Job, optional
     Watched for progress and cancellation.
 
@@ -60,6 +71,8 @@ Raises
 InputError
     An argument has the wrong shape or type.
 MeshError
+    Lengths that are not finite and positive, that are not the same for both faces of an edge (to 1e-12), or that are
+    not those of a triangle.
     No faces, coordinates that are not finite or beyond 1e60, indices out of range, faces without area (lower than 1e-12
     of their longest edge) or that use a vertex twice, duplicate faces, non-manifold edges or vertices, neighbors of
     opposite orientation, vertices of no face. The message names the first three; `repair` mends all but the index range.
@@ -75,7 +88,8 @@ void bind_mesh(py::module_& m) {
     return [member](const py::object& self) { return view_of((mesh_of(self).*member)(), self); };
   };
   py::class_<Mesh, std::shared_ptr<Mesh>>(m, "Mesh", py::module_local(), k_mesh_doc)
-      .def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(), py::arg("job") = py::none())
+      .def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
+           py::arg("lengths") = py::none(), py::arg("job") = py::none())
       .def_property_readonly("vertices", view(&Mesh::positions), "(V, 3) float64: positions.")
       .def_property_readonly("triangles", view(&Mesh::triangles), "(F, 3) int32: vertices of each face.")
       .def_property_readonly("vertex_count", &Mesh::vertex_count, "Number of vertices.")
@@ -83,6 +97,9 @@ void bind_mesh(py::module_& m) {
       .def_property_readonly("edge_count", &Mesh::edge_count, "Number of edges.")
       .def_property_readonly("edges", &edges, "(E, 2) int32: the two vertices of each edge, in the order of the faces.")
       .def_property_readonly("edge_lengths", &edge_lengths, "(E,) float64: lengths, in the order of `edges`.")
+      .def_property_readonly("is_intrinsic", &Mesh::is_intrinsic,
+                             "True where lengths are not those of the positions: given, or of more than three "
+                             "coordinates. What needs a shape in space is then refused.")
       .def_property_readonly("mean_edge_length", &Mesh::mean_edge_length, "Mean length of an edge.")
       .def_property_readonly("face_areas", view(&Mesh::face_areas), "(F,) float64: areas.")
       .def_property_readonly("area", &Mesh::area, "Area of the whole surface.")
@@ -115,10 +132,14 @@ void bind_mesh(py::module_& m) {
       .def_property_readonly("component_count", &Mesh::component_count, "Number of connected components.")
       .def_property_readonly("genus", &Mesh::genus,
                              "Number of handles, summed over the components, boundary loops thought closed.")
-      .def_property_readonly("fingerprint", &Mesh::fingerprint, "64-bit hash of vertices and triangles.")
+      .def_property_readonly("fingerprint", &Mesh::fingerprint,
+                             "64-bit hash of vertices, triangles and lengths of its own.")
       .def("__repr__", &describe)
-      .def("__reduce__", [](const py::object& self) {
-        return py::make_tuple(py::type::of(self), py::make_tuple(self.attr("vertices"), self.attr("triangles")));
+      .def("__reduce__", [](const py::object& self) -> py::tuple {
+        const py::tuple arrays = py::make_tuple(self.attr("vertices"), self.attr("triangles"));
+        if (!mesh_of(self).is_intrinsic()) return py::make_tuple(py::type::of(self), arrays);
+        const py::object partial = py::module_::import("functools").attr("partial");
+        return py::make_tuple(partial(py::type::of(self), py::arg("lengths") = self.attr("edge_lengths")), arrays);
       });
 }
 

@@ -145,7 +145,7 @@ std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const p
   const MapShapesOptions options{result->limits, result->fields(), as_integer(threads, "threads"), token};
   without_gil([&] {
     result->mapped = map_shapes(mesh, result->shapes, result->placements, options);
-    result->normals = vertex_normals(mesh);
+    if (!mesh.is_intrinsic()) result->normals = vertex_normals(mesh);  // else whoever needs them is refused
   });
   return result;
 }

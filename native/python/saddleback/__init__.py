@@ -123,6 +123,7 @@ from saddleback._saddleback import (
 )
 from saddleback.density_match import DensityMatch, density_match
 from saddleback.mesh_files import write_curves, write_mesh
+from saddleback.metrics import anisotropic_metric
 from saddleback.placement_files import read_placement_field, read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.quality_plot import quality_plot
@@ -195,6 +196,7 @@ __all__ = [
     "VoronoiEdge",
     "__version__",
     "add_barriers",
+    "anisotropic_metric",
     "arcs_across",
     "bake_cells",
     "balance_2d",

@@ -87,10 +87,14 @@ class Mesh:
 
     Parameters
     ----------
-    vertices : array_like of shape (V, 3)
-        Positions; any real number type, kept as float64. Every vertex must belong to a face.
+    vertices : array_like of shape (V, d), d >= 2
+        Positions; any real number type, kept as float64. Every vertex must belong to a face. With more than three coordinates
+        edges are as long as in d dimensions, and the first three are kept to show the surface; with two the third is 0.
     triangles : array_like of shape (F, 3)
         Vertex indices of each face, counter-clockwise; any integer type.
+    lengths : array_like of shape (F, 3) or (E,), optional
+        A metric of the surface's own: how long the sides of each face are, from corner i to corner i + 1, or the edges, in
+        the order of `edges`. Everything is then measured by them, and `vertices` only show the surface.
     job : Job, optional
         Watched for progress and cancellation.
 
@@ -99,6 +103,8 @@ class Mesh:
     InputError
         An argument has the wrong shape or type.
     MeshError
+        Lengths that are not finite and positive, that are not the same for both faces of an edge (to 1e-12), or that are
+        not those of a triangle.
         No faces, coordinates that are not finite or beyond 1e60, indices out of range, faces without area (lower than 1e-12
         of their longest edge) or that use a vertex twice, duplicate faces, non-manifold edges or vertices, neighbors of
         opposite orientation, vertices of no face. The message names the first three; `repair` mends all but the index range.
@@ -107,7 +113,9 @@ class Mesh:
     -----
     O(V + F) time; about 200 bytes a vertex. All arrays that it gives are read-only views of its memory.
     """
-    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, *, job: Job | None = None) -> None: ...
+    def __init__(
+        self, vertices: ArrayLike, triangles: ArrayLike, *, lengths: ArrayLike | None = None, job: Job | None = None
+    ) -> None: ...
     @property
     def vertices(self) -> _Floats:
         """(V, 3) float64: positions."""
@@ -129,6 +137,9 @@ class Mesh:
     @property
     def edge_lengths(self) -> _Floats:
         """(E,) float64: lengths, in the order of `edges`."""
+    @property
+    def is_intrinsic(self) -> bool:
+        """True where lengths are not those of the positions: given, or of more than three coordinates. What needs a shape in space is then refused."""
     @property
     def mean_edge_length(self) -> float:
         """Mean length of an edge."""
@@ -170,7 +181,7 @@ class Mesh:
         """Number of handles, summed over the components, boundary loops thought closed."""
     @property
     def fingerprint(self) -> int:
-        """64-bit hash of vertices and triangles."""
+        """64-bit hash of vertices, triangles and lengths of its own."""
     @staticmethod
     def from_trimesh(mesh: Any) -> Mesh:
         """Take the vertices and faces of a ``trimesh.Trimesh``, or of whatever has both.

@@ -38,10 +38,7 @@ double weight(const Mesh& mesh, Index h) {
 void place_border(const Mesh& mesh, std::vector<Vec2>& places) {
   const std::vector<Index>& loop = mesh.boundary_loops()[0];
   std::vector<double> until{0};
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Index next = loop[(i + 1) % loop.size()];
-    until.push_back(until.back() + (mesh.position(next) - mesh.position(loop[i])).norm());
-  }
+  for (const Index v : loop) until.push_back(until.back() + mesh.length(mesh.first_halfedge(v)));
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const double angle = 2 * std::numbers::pi * until[i] / until.back();
     places[loop[i]] = {std::cos(angle), std::sin(angle)};

@@ -263,6 +263,7 @@ std::vector<double> along_curve(const Sheet& sheet, const PartedSheet& parted, c
 }  // namespace
 
 StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius, Job* job) {
+  mesh.require_space("stroke_map");
   if (&curve.mesh() != &mesh && curve.mesh().fingerprint() != mesh.fingerprint())
     throw InputError("curve: it lies on another mesh");
   if (!(radius > 0) || !std::isfinite(radius))

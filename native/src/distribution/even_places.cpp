@@ -152,7 +152,8 @@ class Relaxation {
 
 SurfacePoints even_places(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed) {
   if (count == 0) return {};
-  const Index each = std::clamp(k_most_points / count, Index{1}, k_points_a_place);
+  // Where lengths were given, what is near in space may be far: places are even by chance alone.
+  const Index each = mesh.is_intrinsic() ? 1 : std::clamp(k_most_points / count, Index{1}, k_points_a_place);
   SurfacePoints points = sample(mesh, count * each, density, seed);
   if (each == 1) return points;
   Relaxation relaxation(mesh, points, each, density);

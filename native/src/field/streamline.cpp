@@ -9,6 +9,7 @@
 #include <string>
 
 #include "saddleback/error.h"
+#include "saddleback/mesh/surface_curve.h"
 
 #include "field/connection/surface_connection.h"
 #include "mesh/tables/outgoing.h"
@@ -66,9 +67,8 @@ class Walk {
 
  private:
   void record(const SurfacePoint& point) {
-    const Vec3 xyz = position(mesh_, point);
-    if (!path_.points.empty()) path_.length += (xyz - path_.points.back()).norm();
-    path_.points.push_back(xyz);
+    if (!path_.points.empty()) path_.length += step_length(mesh_, path_.surface.back(), point);
+    path_.points.push_back(position(mesh_, point));
     path_.surface.push_back(point);
   }
 
@@ -256,7 +256,8 @@ class Walk {
   bool singular_ = false;
 };
 
-/// A direction in which the field leaves a vertex: at an angle from a half-edge, inside its corner.
+/// A direction in which the field leaves a vertex: at an angle from a half-edge, inside its corner; where lengths were
+/// given, of a plane about the vertex, not of space.
 struct Departure {
   Index halfedge = k_none;
   double angle = 0;
@@ -268,7 +269,7 @@ Departure departure(const DirectionField& field, Index vertex, double offset, co
   const Mesh& mesh = field.mesh();
   const double quantum = 2 * k_pi / field.symmetry();
   Departure best;
-  double best_cosine = -2;
+  double best_cosine = -2, turned = 0;
   for (const Index h : outgoing(mesh, vertex)) {
     const double corner = mesh.corner_angle(h);
     // About the vertex the field is linear in the angle: where is it that angle itself?
@@ -278,12 +279,16 @@ Departure departure(const DirectionField& field, Index vertex, double offset, co
       const double angle = (at_begin + k * quantum) / (1 - slope);
       if (at_begin + k * quantum > 4 * k_pi) break;
       if (angle < -1e-12 || angle > corner + 1e-12) continue;
-      const Vec3 direction = direction_in_space(mesh, Mesh::face_of(h), chart_angle(mesh, h) + angle);
+      const double about = 2 * k_pi / mesh.total_angle(vertex) * (turned + angle);
+      const Vec3 direction = mesh.is_intrinsic()
+                                 ? Vec3(std::cos(about), std::sin(about), 0)
+                                 : direction_in_space(mesh, Mesh::face_of(h), chart_angle(mesh, h) + angle);
       const double cosine = heading ? direction.dot(*heading) : -1;
       if (cosine <= best_cosine) continue;
       best = {h, std::clamp(angle, 0.0, corner), direction};
       best_cosine = cosine;
     }
+    turned += corner;
   }
   return best;
 }
@@ -294,6 +299,7 @@ void check(const DirectionField& field, const SurfacePoint& start, const Streaml
     throw InputError(message("length is ", options.length, ", but must be positive and finite"));
   if (!(options.max_curvature > 0))
     throw InputError(message("max_curvature is ", options.max_curvature, ", but must be positive"));
+  if (options.heading) field.mesh().require_space("heading");
   if (options.heading && !(options.heading->allFinite() && options.heading->norm() > 0))
     throw InputError("heading: a direction must be finite and not zero");
 }

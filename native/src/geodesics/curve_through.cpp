@@ -28,7 +28,7 @@ void append(Way& way, const Way& more) { way.insert(way.end(), more.begin(), mor
 std::vector<double> lengths_along(const Mesh& mesh, const Way& way) {
   std::vector<double> lengths{0};
   for (std::size_t i = 1; i < way.size(); ++i)
-    lengths.push_back(lengths.back() + (position(mesh, way[i]) - position(mesh, way[i - 1])).norm());
+    lengths.push_back(lengths.back() + step_length(mesh, way[i - 1], way[i]));
   return lengths;
 }
 
@@ -124,7 +124,7 @@ void check(const Mesh& mesh, const SurfacePoints& points, std::size_t least, boo
       throw InputError(message(argument, ": points ", before, " and ", i,
                                " are on different components of the mesh, between which there is no way"));
     }
-    if (position(mesh, points[before]) == position(mesh, points[i])) {
+    if (step_length(mesh, points[before], points[i]) == 0) {
       throw InputError(message(argument, ": points ", before, " and ", i, " are the same; leave one out"));
     }
   }
@@ -147,6 +147,7 @@ std::vector<Way> shortest_ways(const SaddleVertexGraph& graph, const SurfacePoin
 SurfaceCurve curve_through(const SaddleVertexGraph& graph, const SurfacePoints& points,
                            const CurveThroughOptions& options, Job* job) {
   const Mesh& mesh = graph.mesh();
+  if (options.smooth) mesh.require_space("smooth");
   check(mesh, points, options.closed ? 3 : 2, options.closed, options.halvings, "points");
   const JobStage stage(job, "Drawing a curve");
   const std::vector<Way> ways = shortest_ways(graph, points, options.closed, stage.part(0, options.smooth ? 0.5 : 1));

@@ -115,6 +115,7 @@ void for_each_face(const Mesh& mesh, const SurfacePoint& point, Visit&& visit) {
 }  // namespace
 
 BarredMesh add_barriers(const Mesh& whole, const Barriers& barriers, Job* job) {
+  whole.require_space("add_barriers");
   const JobStage stage(job, "parting the surface along barriers");
   check(whole, barriers);
   BarrierCuts cuts(whole, barriers.edges, barriers.curves);

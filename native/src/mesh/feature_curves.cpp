@@ -125,6 +125,7 @@ class FeatureGraph {
 }  // namespace
 
 std::vector<SurfaceCurve> feature_curves(const Mesh& mesh, const FeatureCurveOptions& options) {
+  mesh.require_space("feature_curves");
   check_angle("angle", options.angle);
   check_angle("corner_angle", options.corner_angle);
   std::vector<SurfaceCurve> curves;

@@ -137,6 +137,8 @@ class Search {
 
 FarthestPoint farthest_point(const Mesh& from, const Mesh& to, const HausdorffOptions& options, const JobStage& stage) {
   if (!(options.tolerance > 0)) throw InputError(message("tolerance: wanted more than 0, got ", options.tolerance));
+  from.require_space("hausdorff_distance");
+  to.require_space("hausdorff_distance");
   Search search(from, to, options.tolerance * diagonal(from, to), options.threads, stage);
   return search.run(stage);
 }

@@ -230,6 +230,7 @@ SurfacePoint NearestSurface::nearest(const Vec3& wanted, Index hint) const {
 }
 
 SurfacePoints project(const Mesh& mesh, std::span<const double> xyz, const ProjectOptions& options) {
+  mesh.require_space("project");
   for (std::size_t i = 0; i < xyz.size(); ++i)
     if (!std::isfinite(xyz[i]))
       throw InputError(message("xyz: value ", xyz[i], " at [", i / 3, ", ", i % 3, "] is not finite"));

@@ -1,6 +1,7 @@
 #include "saddleback/mesh/surface_curve.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "saddleback/error.h"
 
@@ -62,6 +63,16 @@ Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b
   return found;
 }
 
+double step_length(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b) {
+  if (!mesh.is_intrinsic()) return (position(mesh, b) - position(mesh, a)).norm();
+  const Index face = shared_face(mesh, a, b, k_barycentric_tolerance);
+  if (face == k_none) return std::numeric_limits<double>::infinity();
+  const FaceChart chart(mesh, face);
+  return (chart.to_plane(*barycentric_in(mesh, b, face, k_barycentric_tolerance)) -
+          chart.to_plane(*barycentric_in(mesh, a, face, k_barycentric_tolerance)))
+      .norm();
+}
+
 SurfaceCurve::SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed, const char* argument)
     : mesh_(&mesh), points_(std::move(points)), closed_(closed) {
   check_surface_points(mesh, points_, argument);
@@ -90,8 +101,8 @@ void SurfaceCurve::add_segment(std::size_t from, std::size_t to, const char* arg
                        length_, 0};
   // By what the coordinates differ: places far from the origin are rounded, and one place would be two.
   const Vec3 change = segment.end - segment.begin;
-  const auto corner = [&](int i) { return mesh_->position(mesh_->triangles()[face][i]); };
-  segment.length = (change[1] * (corner(1) - corner(0)) + change[2] * (corner(2) - corner(0))).norm();
+  const std::array<Vec3, 3> corner = mesh_->corners(3 * face);
+  segment.length = (change[1] * (corner[1] - corner[0]) + change[2] * (corner[2] - corner[0])).norm();
   const Index h = 3 * face;
   const double longest = std::max({mesh_->length(h), mesh_->length(h + 1), mesh_->length(h + 2)});
   if (segment.length <= k_no_length * longest) return;

@@ -87,8 +87,7 @@ Vec3 normalized_barycentric(const Vec3& barycentric) {
 }
 
 FaceChart::FaceChart(const Mesh& mesh, Index face) {
-  const Triangle& t = mesh.triangles()[face];
-  const FlatFace flat(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
+  const FlatFace flat(mesh.corners(3 * face));
   for (int i = 0; i < 3; ++i) corner[i] = flat.corner[i];
 }
 
@@ -104,6 +103,12 @@ Vec3 FaceChart::to_barycentric(const Vec2& xy) const {
 
 Vec3 direction_in_space(const Mesh& mesh, Index face, double angle) {
   const Triangle& t = mesh.triangles()[face];
+  if (mesh.is_intrinsic()) {
+    const FaceChart chart(mesh, face);
+    const Vec3 x = (mesh.position(t[1]) - mesh.position(t[0])) / chart.corner[1].x();
+    const Vec3 y = (mesh.position(t[2]) - mesh.position(t[0]) - chart.corner[2].x() * x) / chart.corner[2].y();
+    return (std::cos(angle) * x + std::sin(angle) * y).stableNormalized();
+  }
   const Vec3 x = (mesh.position(t[1]) - mesh.position(t[0])).normalized();
   const Vec3 normal = x.cross(mesh.position(t[2]) - mesh.position(t[0])).normalized();
   return std::cos(angle) * x + std::sin(angle) * normal.cross(x);

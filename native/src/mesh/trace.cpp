@@ -126,13 +126,9 @@ class Walk {
   }
 
   /// Makes h the half-edge whose chart is used.
-  void enter(Index h) {
-    halfedge_ = h;
-    from_ = &mesh_.position(mesh_.from(h));
-    to_ = &mesh_.position(mesh_.to(h));
-  }
+  void enter(Index h) { halfedge_ = h; }
 
-  FlatFace chart() const { return {*from_, *to_, mesh_.position(mesh_.apex(halfedge_))}; }
+  FlatFace chart() const { return FlatFace(mesh_.corners(halfedge_)); }
 
   /// Leaves from anywhere in the closed face, in any direction.
   bool leave_inside() {
@@ -295,7 +291,6 @@ class Walk {
   const double length_;
   Record& record_;
   Index halfedge_ = 0;
-  const Vec3 *from_ = nullptr, *to_ = nullptr;
   Vec2 place_ = Vec2::Zero(), direction_ = Vec2::UnitX();
   bool at_corner_ = false;
   double traveled_ = 0;
@@ -361,6 +356,7 @@ VertexDirection direction_at_vertex(const Mesh& mesh, Index vertex, const Vec3& 
 
 double start_angle(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction) {
   check_surface_point(mesh, start, "point");
+  mesh.require_space("direction: a vector");
   const double longest = direction.cwiseAbs().maxCoeff();
   if (!direction.allFinite() || longest == 0)
     throw InputError(message("direction is (", direction.x(), ", ", direction.y(), ", ", direction.z(),

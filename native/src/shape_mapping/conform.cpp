@@ -49,6 +49,7 @@ ConformedPoints Conformer::conform(const Shape& shape, const Placement& placemen
 }
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
+  mesh.require_space("a normal");
   std::vector<Vec3> normals(static_cast<std::size_t>(mesh.vertex_count()), Vec3::Zero());
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Vec3 normal = face_normal(mesh, f);
@@ -71,6 +72,7 @@ Vec3 normal_at(const Mesh& mesh, std::span<const Vec3> vertex_normals, const Sur
 
 std::vector<Vec3> positions_of(const Mesh& mesh, std::span<const Vec3> vertex_normals, const SurfacePoints& anchors,
                                std::span<const double> heights) {
+  mesh.require_space("a normal");
   std::vector<Vec3> result;
   result.reserve(anchors.size());
   for (std::size_t i = 0; i < anchors.size(); ++i)
@@ -80,6 +82,7 @@ std::vector<Vec3> positions_of(const Mesh& mesh, std::span<const Vec3> vertex_no
 
 std::vector<RigidFrame> rigid_frames(const Mesh& mesh, std::span<const Vec3> vertex_normals,
                                      std::span<const Placement> placements) {
+  mesh.require_space("a normal");
   std::vector<RigidFrame> result;
   result.reserve(placements.size());
   for (const Placement& placement : placements) {

@@ -199,7 +199,8 @@ MapFailure OutlineMapper::measure(Index face, Stretch& stretch) const {
   const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
   const Vec2 &a = place(i), &b = place(j), &c = place(k);
   if (!is_upright(a, b, c)) return MapFailure::fold;
-  const Vec3 e1 = mesh_->position(j) - mesh_->position(i), e2 = mesh_->position(k) - mesh_->position(i);
+  const auto [p, q, r] = mesh_->corners(3 * face);
+  const Vec3 e1 = q - p, e2 = r - p;
   const Vec2 u1 = b - a, u2 = c - a;
   const double scale = 1 / cross(u1, u2);
   const Vec3 x = scale * (u2.y() * e1 - u1.y() * e2), y = scale * (u1.x() * e2 - u2.x() * e1);

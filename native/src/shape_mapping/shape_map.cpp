@@ -53,7 +53,7 @@ void ShapeMap::about_point(const SurfacePoint& center, double angle, const Plane
   begin();
   along_curve_ = false;
   center_ = position(*mesh_, center);
-  reach_ = reach;
+  reach_ = mesh_->in_space(reach);
   center_face_ = center.face;
   const Index vertex = vertex_at(*mesh_, center);
   if (vertex == k_none)
@@ -169,10 +169,9 @@ void ShapeMap::look_about(Index vertex, const PlaneBox& box) {
   };
   bool is_next_open = is_open(mesh_->to(mesh_->first_halfedge(vertex)));
   for (const Index h : outgoing(*mesh_, vertex)) {
-    const Index next = mesh_->to(h), apex = mesh_->apex(h);
-    const bool is_apex_open = is_open(apex);
-    if (is_next_open) look_through(vertex, next, apex);
-    if (is_apex_open) look_through(apex, vertex, next);
+    const bool is_apex_open = is_open(mesh_->apex(h));
+    if (is_next_open) look_through(h);
+    if (is_apex_open) look_through(Mesh::prev(h));
     is_next_open = is_apex_open;  // the apex is where the next half-edge goes
   }
 }
@@ -182,9 +181,10 @@ Sight ShapeMap::sight_through(const UnfoldedTriangle& triangle, const Vec2& from
   return sight_of_line(triangle, from, to, bend_->curvature(0.5 * (from.x() + to.x()), triangle.edge));
 }
 
-void ShapeMap::look_through(Index from, Index to, Index apex) {
+void ShapeMap::look_through(Index halfedge) {
+  const Index from = mesh_->from(halfedge), to = mesh_->to(halfedge), apex = mesh_->apex(halfedge);
   if (has(apex) && nodes_[apex].state >= State::source) return;
-  const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
+  const UnfoldedTriangle triangle(mesh_->corners(halfedge));
   const Sight sight = sight_through(triangle, nodes_[from].place, nodes_[to].place);
   // What is not seen well waits for an edge that it may be seen through after all.
   const double key = distance_of(sight.place) + sight.miss * triangle.edge;
@@ -200,7 +200,7 @@ void ShapeMap::complete(Index face) {
     const Index h = 3 * face + i;
     const Index from = mesh_->from(h), to = mesh_->to(h), apex = mesh_->apex(h);
     if (has(apex) || !has(from) || !has(to)) continue;
-    const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
+    const UnfoldedTriangle triangle(mesh_->corners(h));
     const Vec2 place = sight_through(triangle, nodes_[from].place, nodes_[to].place).place;
     reach(apex) = {place, 0, 0, stamp_, State::waiting};
   }

@@ -106,7 +106,7 @@ class ShapeMap {
   void march(const PlaneBox& box, const Watch& watch);
   void look_about(Index vertex, const PlaneBox& box);
   bool is_out_of_reach(Index from, Index to) const;
-  void look_through(Index from, Index to, Index apex);
+  void look_through(Index halfedge);
   double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
 
   Sight sight_through(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) const;

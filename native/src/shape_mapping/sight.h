@@ -1,6 +1,7 @@
 #pragma once
 // Coordinates of a triangle's apex from those of its edge.
 
+#include <array>
 #include <cmath>
 
 #include "saddleback/types.h"
@@ -14,8 +15,9 @@ struct UnfoldedTriangle {
   double edge;
   Vec2 apex;
   UnfoldedTriangle(double length, const Vec2& top) : edge(length), apex(top) {}
-  UnfoldedTriangle(const Vec3& from, const Vec3& to, const Vec3& top) {
-    const Vec3 u = to - from, v = top - from;
+  /// Corners: of the edge, then the apex.
+  explicit UnfoldedTriangle(const std::array<Vec3, 3>& corners) {
+    const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
     edge = u.norm();
     apex = Vec2(u.dot(v), u.cross(v).norm()) / edge;
   }

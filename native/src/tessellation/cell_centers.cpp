@@ -160,7 +160,7 @@ Vec2 in_chart(const Mesh& mesh, Index face, const Vec3& vector) {
 /// Returns where the search for the center begins: as far from the site as the cell's mean in space is, which mostly
 /// makes a map of the cell unnecessary; the site if that place is not in the cell.
 SurfacePoint first_place(const Mesh& mesh, const CellMass& cell, const SurfacePoint& site, double size) {
-  if (vertex_at(mesh, site) != k_none) return site;
+  if (mesh.is_intrinsic() || vertex_at(mesh, site) != k_none) return site;
   const Vec2 step = in_chart(mesh, site.face, cell.mean_in_space(mesh) - position(mesh, site));
   if (!(step.norm() < size)) return site;
   const SurfacePoint moved = move_sites(mesh, {site}, {step}, 1).sites.front();

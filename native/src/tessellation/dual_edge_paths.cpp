@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -66,6 +67,14 @@ struct Miss {
 };
 
 Miss miss_of(const Mesh& mesh, const TraceEnd& end, const SurfacePoint& target) {
+  if (mesh.is_intrinsic()) {  // which tells nothing of targets in other faces
+    const std::optional<Vec3> place = barycentric_in(mesh, target, end.point.face);
+    if (!place) return {std::numeric_limits<double>::infinity(), 0, 0};
+    const FaceChart chart(mesh, end.point.face);
+    const Vec2 step = chart.to_plane(*place) - chart.to_plane(end.point.barycentric);
+    const Vec2 ahead(std::cos(end.angle), std::sin(end.angle));
+    return {step.norm(), step.dot(ahead), step.dot(Vec2(-ahead.y(), ahead.x()))};
+  }
   const Vec3 step = position(mesh, target) - position(mesh, end.point);
   const Vec3 ahead = direction_in_space(mesh, end.point.face, end.angle);
   const Vec3 left = direction_in_space(mesh, end.point.face, end.angle + std::numbers::pi / 2);
@@ -90,9 +99,10 @@ bool aim(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& target,
 }
 
 /// Returns the path with its length measured along its polyline.
-GeodesicPath measured(GeodesicPath path) {
+GeodesicPath measured(const Mesh& mesh, GeodesicPath path) {
   path.length = 0;
-  for (std::size_t i = 1; i < path.points.size(); ++i) path.length += (path.points[i] - path.points[i - 1]).norm();
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+    path.length += step_length(mesh, path.surface[i - 1], path.surface[i]);
   return path;
 }
 
@@ -109,7 +119,7 @@ GeodesicPath over_crossing(const SaddleVertexGraph& graph, const SurfacePoint& l
   const GeodesicPath rest = reversed(shortest_path(graph, right, middle, {.shorten = true, .threads = 1}));
   path.points.insert(path.points.end(), rest.points.begin() + 1, rest.points.end());
   path.surface.insert(path.surface.end(), rest.surface.begin() + 1, rest.surface.end());
-  return measured(std::move(path));
+  return measured(graph.mesh(), std::move(path));
 }
 
 /// A dual edge: the straightest geodesic from site to site, or over the boundary where none is found.
@@ -124,7 +134,7 @@ Across look_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polylin
   const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
                      &right = cells.sites[cells.edge_cells[polyline][1]];
   const Crossing crossing = crossing_of(mesh, cells, polyline);
-  const double chord = (position(mesh, left) - position(mesh, right)).norm();
+  const double chord = mesh.bird((position(mesh, left) - position(mesh, right)).norm());
   Across across{crossing, false, left, 0, std::max(2 * crossing.distance, chord)};
   double back = crossing.angle, half = crossing.distance;
   if (!crossing.is_aimed || vertex_at(mesh, crossing.point) != k_none || !aim(mesh, crossing.point, left, back, half))
@@ -157,7 +167,7 @@ GeodesicPath path_across(const SaddleVertexGraph& graph, const GeodesicVoronoi& 
     if (last > 0 && shared_face(mesh, path.surface[last - 1], right) != k_none) {
       path.surface[last] = right;
       path.points[last] = position(mesh, right);
-      return measured(std::move(path));
+      return measured(mesh, std::move(path));
     }
   }
   return over_crossing(graph, left, across.crossing.point, right);

@@ -74,7 +74,8 @@ DualMesh dual_of(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage&
 /// Returns the places that are no site yet, each once: two cells may have been given the same corner.
 SurfacePoints new_places(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& places) {
   const auto key = [&](const SurfacePoint& point) {
-    const Vec3 place = position(mesh, point);
+    const Vec3 place =
+        mesh.is_intrinsic() ? Vec3(point.face, point.barycentric[0], point.barycentric[1]) : position(mesh, point);
     return std::array{place.x(), place.y(), place.z()};
   };
   std::set<std::array<double, 3>> known;

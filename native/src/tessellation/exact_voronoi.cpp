@@ -153,6 +153,7 @@ class InFaces {
 }  // namespace
 
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job) {
+  mesh.require_space("exact");
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells by exact distances");
   std::vector<Index> kept = sites_of_places(mesh, sites);

@@ -60,8 +60,11 @@ class Gathering {
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
   }
 
-  /// The given point nearest in space to the weighted mean.
+  /// The given point nearest in space to the weighted mean; the first where lengths were given.
   SurfacePoint start() {
+    for (const SurfacePoint& point : points_)
+      for (int i = 0; i < 3; ++i) radius_ = std::max(radius_, 2 * mesh_.length(3 * point.face + i));
+    if (mesh_.is_intrinsic()) return points_[0];  // space does not tell what is near
     Vec3 mean = Vec3::Zero();
     double sum = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -77,8 +80,6 @@ class Gathering {
     }
     for (const SurfacePoint& point : points_)
       radius_ = std::max(radius_, 2 * (position(mesh_, point) - position(mesh_, points_[best])).norm());
-    for (const SurfacePoint& point : points_)
-      for (int i = 0; i < 3; ++i) radius_ = std::max(radius_, 2 * mesh_.length(3 * point.face + i));
     return points_[best];
   }
 

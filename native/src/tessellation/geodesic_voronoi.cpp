@@ -205,7 +205,7 @@ std::vector<Index> sites_in_reach(const GeodesicVoronoi& cells, const Mesh& mesh
   std::vector<std::uint8_t> is_in_reach(positions.size(), 0);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec3 place = position(mesh, places[i]);
-    const double reach = known[i] * k_bird;
+    const double reach = mesh.in_space(known[i] * k_bird);
     auto site = std::ranges::lower_bound(along, std::pair(place[axis] - reach, Index(0)));
     for (; site != along.end() && site->first <= place[axis] + reach; ++site)
       is_in_reach[site->second] |= (positions[site->second] - place).norm() <= reach;

@@ -120,10 +120,10 @@ def test_messages_name_three_offenders_and_the_count():
         (np.multiply(TRIANGLE, 1e300), [(0, 1, 2)], sb.MeshError, "beyond 1e60"),
         (np.multiply(TRIANGLE, 1e-300), [(0, 1, 2)], sb.MeshError, "no area"),
         (
-            np.zeros((4, 2)),
+            np.zeros((4, 1)),
             [(0, 1, 2)],
             sb.InputError,
-            r"vertices: wanted shape \(n, 3\) of real numbers, got \(4, 2\)",
+            r"vertices: wanted shape \(n, d\) of real numbers, d at least 2, got \(4, 1\)",
         ),
         (TRIANGLE, [0, 1, 2], sb.InputError, r"triangles: wanted shape \(n, 3\) of integers, got \(3,\)"),
         (TRIANGLE, [(0.0, 1.0, 2.0)], sb.InputError, "triangles: .* got type float64"),

@@ -1,7 +1,9 @@
 #pragma once
 // The triangle mesh that everything stands on: checked once, immutable, flat arrays.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +11,14 @@
 #include "saddleback/types.h"
 
 namespace saddleback {
+
+/// Tells how long the edges of a mesh are, where positions do not.
+struct MeshMetric {
+  int dimension = 3;  ///< coordinates a vertex; of others than three the lengths are kept, and the first three to show
+  /// Given lengths: three a face, of edge i to i+1, or one an edge in the order of edge_halfedges(). Else those of
+  /// the coordinates count.
+  std::optional<std::span<const double>> lengths = {};
+};
 
 /// An oriented manifold triangle mesh, with or without boundary, of any number of components.
 ///
@@ -24,6 +34,11 @@ class Mesh {
   Mesh(std::span<const double> xyz, std::span<const Index> triangles, Job* job = nullptr);
   /// Does the same as a part of other work.
   Mesh(std::span<const double> xyz, std::span<const Index> triangles, const JobStage& stage);
+  /// Takes lengths from elsewhere than space: is_intrinsic() but in the plane. \throw MeshError naming also the first
+  /// lengths that are not finite and positive, that differ on the two sides of an edge by more than rounding, or of
+  /// which no triangle can be made that is higher than 1e-12 of its longest side; InputError for another count.
+  Mesh(std::span<const double> coordinates, std::span<const Index> triangles, const MeshMetric& metric,
+       Job* job = nullptr);
 
   Index vertex_count() const { return static_cast<Index>(positions_.size()); }
   Index face_count() const { return static_cast<Index>(triangles_.size()); }
@@ -32,6 +47,22 @@ class Mesh {
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const { return triangles_; }
   const Vec3& position(Index vertex) const { return positions_[vertex]; }
+
+  // Lengths of its own.
+  /// Tells whether lengths were given: nothing is then measured by positions, which only show the surface.
+  bool is_intrinsic() const { return is_intrinsic_; }
+  /// \throw InputError that says what needs the surface's shape in space, where lengths were given.
+  void require_space(const char* call) const;
+  /// from(h), to(h) and apex(h) as far from each other as on the surface: their positions, or else the face laid flat.
+  std::array<Vec3, 3> corners(Index h) const {
+    if (is_intrinsic_) [[unlikely]]
+      return laid_flat(h);
+    return {positions_[from(h)], positions_[to(h)], positions_[apex(h)]};
+  }
+  /// A bound below the distance over the surface of two places of it so far apart in space: as the bird flies.
+  double bird(double in_space) const { return bird_ * in_space; }
+  /// A bound above how far apart in space two places are that far apart on the surface.
+  double in_space(double on_surface) const { return on_surface / bird_; }
 
   // Half-edges.
   static Index face_of(Index h) { return h / 3; }
@@ -79,12 +110,18 @@ class Mesh {
   /// Each loop as vertices in order, the surface on its left.
   const std::vector<std::vector<Index>>& boundary_loops() const { return boundary_loops_; }
   double mean_edge_length() const { return mean_edge_length_; }
-  /// 64-bit hash of positions and triangles: tells meshes apart, in files and caches.
+  /// 64-bit hash of positions, triangles and given lengths: tells meshes apart, in files and caches.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:
+  Mesh(std::span<const double> coordinates, std::span<const Index> triangles, const MeshMetric& metric,
+       const JobStage& stage);
+  std::array<Vec3, 3> laid_flat(Index h) const;
+  bool is_second_side(Index h) const { return twins_[h] != k_none && twins_[h] < h; }
   void order_vertices();
+  void take_lengths(std::span<const double> coordinates, const MeshMetric& metric);
   void measure();
+  void measure_bird();
   void find_components();
   void find_boundary_loops();
 
@@ -94,7 +131,8 @@ class Mesh {
   std::vector<double> lengths_, corner_angles_, total_angles_, face_areas_;
   std::vector<std::uint8_t> boundary_, saddle_;
   std::vector<std::vector<Index>> boundary_loops_;
-  double area_ = 0, mean_edge_length_ = 0;
+  bool is_intrinsic_ = false;
+  double bird_ = 1, area_ = 0, mean_edge_length_ = 0;
   Index component_count_ = 0, genus_ = 0, edge_count_ = 0;
   std::uint64_t fingerprint_ = 0;
 };

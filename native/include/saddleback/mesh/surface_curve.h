@@ -51,4 +51,7 @@ std::optional<Vec3> barycentric_in(const Mesh& mesh, const SurfacePoint& point, 
 /// A face that both points lie on, k_none when there is none. Of several the first point's own, then the second's.
 Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double tolerance = 0);
 
+/// Length of the straight line between two points of one face; in space also between others, as the bird flies.
+double step_length(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b);
+
 }  // namespace saddleback

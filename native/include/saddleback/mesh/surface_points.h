@@ -56,7 +56,8 @@ struct FaceChart {
   Vec3 to_barycentric(const Vec2& xy) const;
 };
 
-/// The direction in a face's chart as a unit vector in space.
+/// The direction in a face's chart as a unit vector in space; where lengths were given, as the positions show it, and 0
+/// where they do not.
 Vec3 direction_in_space(const Mesh& mesh, Index face, double angle);
 
 }  // namespace saddleback

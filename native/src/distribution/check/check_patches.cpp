@@ -145,8 +145,15 @@ class PatchCheck {
   const Vec2& plane(std::size_t t, int i) const { return patches_.vertex_plane[patches_.triangles[t][i]]; }
 
   void measure_stretch(std::size_t t, const Vec2 (&uv)[3], double scale) {
+    const Index face = patches_.triangle_face[t];
+    const std::array<Vec3, 3> of_face = mesh_.corners(3 * face);
     Vec3 corner[3];
-    for (int i = 0; i < 3; ++i) corner[i] = position(mesh_, patches_.vertices[patches_.triangles[t][i]]);
+    for (int i = 0; i < 3; ++i) {
+      const SurfacePoint& point = patches_.vertices[patches_.triangles[t][i]];
+      const Vec2 w = weights_in(mesh_, point, face);
+      corner[i] = mesh_.is_intrinsic() ? Vec3(w.x() * (of_face[1] - of_face[0]) + w.y() * (of_face[2] - of_face[0]))
+                                       : position(mesh_, point);
+    }
     Eigen::Matrix2d from;
     from << scale * (uv[1] - uv[0]), scale * (uv[2] - uv[0]);
     Eigen::Matrix<double, 3, 2> to;

@@ -79,6 +79,7 @@ Mat3 tangential(const Mat3& value, const Vec3& normal) {
 }  // namespace
 
 ShapeOperator shape_operator(const Mesh& mesh, const JobStage& stage) {
+  mesh.require_space("curvature");
   ShapeOperator result{vertex_normals(mesh), std::vector<Mat3>(mesh.vertex_count(), Mat3::Zero())};
   std::vector<double> areas(mesh.vertex_count(), 0.0);
   for (Index f = 0; f < mesh.face_count(); ++f) {

@@ -9,8 +9,8 @@ namespace {
 
 /// Cotangent of the angle at h's apex.
 double apex_cotangent(const Mesh& mesh, Index h) {
-  const Vec3& apex = mesh.position(mesh.apex(h));
-  const Vec3 a = mesh.position(mesh.from(h)) - apex, b = mesh.position(mesh.to(h)) - apex;
+  const auto [from, to, apex] = mesh.corners(h);
+  const Vec3 a = from - apex, b = to - apex;
   return a.dot(b) / a.cross(b).norm();
 }
 

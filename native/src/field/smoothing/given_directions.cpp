@@ -82,6 +82,7 @@ bool has_part_within(Complex part, const Vec3& vector) {
 }
 
 std::vector<Complex> powers_of_directions(const Mesh& mesh, int symmetry, const GivenDirections& given) {
+  mesh.require_space("directions: a vector");
   std::vector<Complex> result(mesh.face_count());
   const std::size_t count = given.vectors.size();
   const bool is_of_faces = count == result.size();

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "saddleback/error.h"
+#include "saddleback/mesh/surface_curve.h"
 
 #include "support/planar.h"
 
@@ -144,8 +145,8 @@ GeodesicPath ExactTracer::path(const SurfacePoint& target) const {
   result.surface.assign(backwards.rbegin(), backwards.rend());
   result.points.reserve(result.surface.size());
   for (const SurfacePoint& point : result.surface) result.points.push_back(position(mesh, point));
-  for (std::size_t i = 1; i < result.points.size(); ++i)
-    result.length += (result.points[i] - result.points[i - 1]).norm();
+  for (std::size_t i = 1; i < result.surface.size(); ++i)
+    result.length += step_length(mesh, result.surface[i - 1], result.surface[i]);
   return result;
 }
 

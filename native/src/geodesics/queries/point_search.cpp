@@ -72,7 +72,7 @@ class PointSearch::Run {
     if (met.bound >= 0) return met;
     memory_.touched_.push_back(node);
     const Vec3& place = graph_.mesh().position(graph_.vertex_of(node));
-    const double straight = (place - target_.position).norm() * k_straight_line - rounding_of_arcs_;
+    const double straight = graph_.mesh().bird((place - target_.position).norm()) * k_straight_line - rounding_of_arcs_;
     met.bound = std::max({0.0, straight, landmarks_.bound(node, target_)});
     return met;
   }

@@ -49,7 +49,7 @@ double straight_length(const SaddleVertexGraph& graph, const SurfacePoint& a, co
 double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan,
                      const SurfacePoint& b, const PointFan& b_fan, double upper) {
   if (a_fan.is_vertex || b_fan.is_vertex) return k_infinity;
-  const double bird = (position(graph.mesh(), a) - position(graph.mesh(), b)).norm();
+  const double bird = graph.mesh().bird((position(graph.mesh(), a) - position(graph.mesh(), b)).norm());
   const double around = over_a_vertex(a_fan, b_fan);
   if (around < k_infinity) return straight_length(graph, a, b, bird, around, upper);
   // Points of needles are near each other, and far from all that they see of vertices.
@@ -78,12 +78,12 @@ double NearbySources::least_length(const SurfacePoint& target, const PointFan& f
                                    Index* point) const {
   if (fan.is_vertex) return upper;
   const Vec3 place = position(graph_.mesh(), target);
-  const double farthest = std::min(upper, fan.reach + reach_) / k_bird;
+  const double farthest = std::min(upper, fan.reach + reach_) / k_bird, around = graph_.mesh().in_space(farthest);
   // Nearest first as the bird flies: when that is farther than the way known, so are all that follow.
   std::vector<std::pair<double, Index>> in_order;
-  auto entry = std::ranges::lower_bound(entries_, place[axis_] - farthest, {}, &Entry::along);
-  for (; entry != entries_.end() && entry->along <= place[axis_] + farthest; ++entry) {
-    const double bird = (positions_[entry->source] - place).norm() * k_bird;
+  auto entry = std::ranges::lower_bound(entries_, place[axis_] - around, {}, &Entry::along);
+  for (; entry != entries_.end() && entry->along <= place[axis_] + around; ++entry) {
+    const double bird = graph_.mesh().bird((positions_[entry->source] - place).norm()) * k_bird;
     if (bird <= farthest) in_order.emplace_back(bird, entry->source);
   }
   std::ranges::sort(in_order);

@@ -56,7 +56,7 @@ bool ArcUnfolder::unfold_within(double border, const ArcHint& hint, UnfoldedArc&
 
 bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
   const double straight = (mesh_.position(hint.to) - mesh_.position(hint.from)).norm();
-  if (straight < hint.length * (1 - 2 * hint.tolerance)) return false;
+  if (!mesh_.is_intrinsic() && straight < hint.length * (1 - 2 * hint.tolerance)) return false;
   for (const Index h : outgoing(mesh_, hint.from)) {
     if (mesh_.to(h) == hint.to && same_length(mesh_.length(h), hint)) {
       arc.length = mesh_.length(h);

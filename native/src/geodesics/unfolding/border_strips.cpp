@@ -146,9 +146,9 @@ void BorderStrips::measure_borders(const Mesh& mesh) {
   along_border_.resize(nodes_.size());
   double along = 0;
   for (const std::vector<Index>& loop : mesh.boundary_loops()) {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      along_border_[nodes_[loop[i]]] = along;
-      along += (mesh.position(loop[(i + 1) % loop.size()]) - mesh.position(loop[i])).norm() / unit_;
+    for (const Index vertex : loop) {
+      along_border_[nodes_[vertex]] = along;
+      along += mesh.length(mesh.first_halfedge(vertex)) / unit_;
     }
     loop_ends_.push_back(along);
   }

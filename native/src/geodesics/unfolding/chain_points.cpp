@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saddleback/mesh/surface_curve.h"
+
 namespace saddleback {
 namespace {
 
@@ -13,8 +15,11 @@ constexpr double k_at_vertex = 1e-12, k_at_most = 1e-6;
 
 void append_points(const Mesh& mesh, const LegChain& chain, std::vector<Vec3>& points, SurfacePoints& surface) {
   const std::size_t first = points.size();
+  const auto is_last = [&](const SurfacePoint& point, const Vec3& place) {
+    return mesh.is_intrinsic() ? step_length(mesh, surface.back(), point) == 0 : points.back() == place;
+  };
   const auto add = [&](const SurfacePoint& point, const Vec3& place) {
-    if (points.size() > first && points.back() == place) {
+    if (points.size() > first && is_last(point, place)) {
       surface.back() = point;
       return;
     }

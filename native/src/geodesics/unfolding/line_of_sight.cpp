@@ -42,7 +42,7 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
     stack_.pop_back();
     const Index h = window.entered;
     const double least = distance_to_segment(Vec2(Vec2::Zero()), window.from, window.to) +
-                         distance_to_segment(goal, mesh.position(mesh.from(h)), mesh.position(mesh.to(h)));
+                         mesh.bird(distance_to_segment(goal, mesh.position(mesh.from(h)), mesh.position(mesh.to(h))));
     if (least > upper * k_too_long) continue;
     trail_.resize(window.depth);
     trail_.push_back(h);

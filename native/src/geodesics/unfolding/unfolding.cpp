@@ -15,7 +15,7 @@ UnfoldedFace unfold(const Mesh& mesh, Index h) {
     const double along = corner_along(base, left, right);
     return {{along, off}, base - along};
   }
-  const Vec3 &from = mesh.position(mesh.from(h)), &to = mesh.position(mesh.to(h)), &apex = mesh.position(mesh.apex(h));
+  const auto [from, to, apex] = mesh.corners(h);
   return {{(to - from).dot(apex - from) / base, off}, (from - to).dot(apex - to) / base};
 }
 

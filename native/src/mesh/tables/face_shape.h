@@ -2,6 +2,7 @@
 // The measures of one triangle in space, and which triangles are too thin to be measured.
 
 #include <array>
+#include <span>
 
 #include "saddleback/types.h"
 
@@ -27,6 +28,13 @@ struct FaceShape {
 /// atan2(2 area, dot), which keeps full relative accuracy for needles, where the law of cosines loses half the digits
 /// [kahan2014].
 FaceShape measure_face(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Angles and area from the lengths alone, by a formula that loses no digits but those that needles' lengths lack
+/// [kahan2014].
+FaceShape measure_face(std::span<const double, 3> length);
+
+/// Tells whether no triangle, or none with an area, has these lengths.
+bool is_degenerate_face(std::span<const double, 3> length);
 
 /// Tells whether a face has no area: collinear corners (decided exactly) or a height within k_degenerate_height.
 bool is_degenerate_face(const Vec3& a, const Vec3& b, const Vec3& c);

@@ -1,6 +1,8 @@
 #pragma once
 // A face laid out flat, and when a point of it counts as being on an edge or at a corner.
 
+#include <array>
+
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -19,6 +21,7 @@ struct FlatFace {
   /// Lays the face out from positions, not from the three lengths: dot and cross products keep a needle's short side
   /// accurate.
   FlatFace(const Vec3& a, const Vec3& b, const Vec3& c);
+  explicit FlatFace(const std::array<Vec3, 3>& corners) : FlatFace(corners[0], corners[1], corners[2]) {}
   Vec3 to_barycentric(const Vec2& xy) const;
 };
 

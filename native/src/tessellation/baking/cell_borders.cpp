@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <numeric>
 
+#include "saddleback/mesh/surface_curve.h"
+
 namespace saddleback {
 namespace {
 
-double length_of(const GeodesicVoronoi& cells, Index edge) {
+double length_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index edge) {
   double length = 0;
   for (Index i = cells.edge_offsets[edge] + 1; i < cells.edge_offsets[edge + 1]; ++i)
-    length += (cells.positions[cells.edge_points[i]] - cells.positions[cells.edge_points[i - 1]]).norm();
+    length += step_length(mesh, cells.points[cells.edge_points[i - 1]], cells.points[cells.edge_points[i]]);
   return length;
 }
 
@@ -27,7 +29,7 @@ CellBorders::CellBorders(const Mesh& mesh, const GeodesicVoronoi& cells, const J
   };
   std::vector<Index> kept;
   for (Index edge = 0; edge < edge_count; ++edge) {
-    if (length_of(cells, edge) > 0) {
+    if (length_of(mesh, cells, edge) > 0) {
       kept.push_back(edge);
     } else {
       same[one_of(cells.edge_points[cells.edge_offsets[edge + 1] - 1])] =

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "saddleback/mesh/surface_curve.h"
+
 #include "support/threads/parallel.h"
 #include "tessellation/cells/cell_candidates.h"
 
@@ -28,8 +30,7 @@ std::vector<double> CellCandidates::reaches(const SurfacePoints& sites) const {
   parallel_for(labels().site_count(), threads_, 128, [&](Index i, int) {
     const Index site = labels().sites_along_curve()[i];
     if (site >= static_cast<Index>(sites.size()) || !(corners_.farthest[site] > 0)) return;
-    reaches[site] =
-        corners_.farthest[site] + (position(mesh, sites[site]) - position(mesh, labels().sites()[site])).norm();
+    reaches[site] = corners_.farthest[site] + step_length(mesh, labels().sites()[site], sites[site]);
   });
   return reaches;
 }

@@ -53,6 +53,7 @@ SurfacePoint point_on(const CurveSegment& segment, double along) {
 HeldSites::HeldSites(const Mesh& mesh, std::span<const SurfaceCurve* const> curves, std::span<const Index> held,
                      std::size_t site_count)
     : mesh_(mesh), curves_(curves) {
+  if (!curves.empty()) mesh.require_space("curves");
   for (std::size_t i = 0; i < curves.size(); ++i)
     if (&curves[i]->mesh() != &mesh) throw InputError(message("curves: curve ", i, " lies on another mesh"));
   if (held.empty()) return;

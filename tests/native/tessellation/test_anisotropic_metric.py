@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""Cells stretched along a field: how long and which way they are, in space, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+
+MESH = sb.Mesh(*meshes.icosphere(2))
+FIELD = sb.direction_field(MESH, 2)
+
+
+def hills() -> meshes.Arrays:
+    vertices, triangles = meshes.grid(80, 80, jitter=0.3)
+    vertices[:, 2] = 0.1 * np.sin(5 * vertices[:, 0]) * np.cos(4 * vertices[:, 1])
+    return vertices, triangles
+
+
+def second_moments(mesh: sb.Mesh, field: sb.DirectionField, cells: sb.GeodesicVoronoi) -> np.ndarray:
+    """(n, 2, 2) of the cells in space about their middles, along the field at their sites and across it."""
+    split, count = cells.split(), len(cells.areas)
+    cell, corners = split.triangle_cell, split.vertices[split.triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    middles = [np.bincount(cell, area * corners.mean(axis=1)[:, k], count) for k in range(3)]
+    middle = np.stack(middles, axis=1) / np.bincount(cell, area, count)[:, None]
+    along = field.vectors[cells.sites.faces]
+    face = mesh.vertices[mesh.triangles[cells.sites.faces]]
+    normal = np.cross(face[:, 1] - face[:, 0], face[:, 2] - face[:, 0])
+    across = np.cross(normal / np.linalg.norm(normal, axis=1)[:, None], along)
+    offset = corners - middle[cell][:, None]
+    flat = np.stack([np.einsum("tij,tj->ti", offset, axis[cell]) for axis in (along, across)], axis=2)
+    mean = flat.mean(axis=1)
+    of_triangles = np.einsum("tia,tib->tab", flat, flat) + 9 * np.einsum("ta,tb->tab", mean, mean)
+    of_triangles *= (area / 12)[:, None, None]
+    moments = np.zeros((count, 2, 2))
+    np.add.at(moments, cell, of_triangles)
+    return moments
+
+
+@pytest.mark.parametrize("stretch", [2.0, 5.0])
+@pytest.mark.parametrize(
+    ("arrays", "count"), [(meshes.icosphere(5), 400), (meshes.torus(120, 60), 250), (hills(), 250)]
+)
+def test_cells_are_as_long_and_lie_as_asked(arrays, count, stretch):
+    mesh = sb.Mesh(*arrays)
+    field = sb.direction_field(mesh, 2)
+    metric = sb.Mesh(mesh.vertices, mesh.triangles, lengths=sb.anisotropic_metric(mesh, field, stretch))
+    assert abs(metric.area / mesh.area - 1) < 0.01
+    cells = sb.centroidal_voronoi(sb.SaddleVertexGraph(metric), count=count, max_iterations=60).cells
+    moments = second_moments(mesh, field, cells)
+    ratios = np.sqrt(moments[:, 0, 0] / moments[:, 1, 1])
+    assert abs(np.exp(np.log(ratios).mean()) / stretch - 1) < 0.1
+    longest = np.linalg.eigh(moments)[1][:, :, 1]
+    turned = np.degrees(np.arctan2(longest[:, 1], longest[:, 0]))
+    assert abs((turned + 90) % 180 - 90).mean() < 5
+
+
+def test_lengths_in_the_plane_are_the_stretched_ones():
+    vertices, triangles = meshes.grid(7, 5, jitter=0.3)
+    mesh = sb.Mesh(vertices, triangles)
+    way = np.array([np.cos(0.4), np.sin(0.4)])
+    found = sb.anisotropic_metric(mesh, np.tile([*way, 0.7], (mesh.face_count, 1)), 3)
+    sides = (np.roll(vertices[triangles], -1, axis=1) - vertices[triangles])[..., :2]
+    along, across = sides @ way, sides @ [-way[1], way[0]]
+    np.testing.assert_allclose(found, np.sqrt(along**2 / 3 + across**2 * 3), rtol=1e-12)
+    isotropic = sb.anisotropic_metric(mesh, np.zeros((mesh.face_count, 3)), 3)
+    np.testing.assert_allclose(isotropic, np.linalg.norm(sides, axis=2), rtol=1e-12)
+    denser = sb.anisotropic_metric(mesh, np.zeros((mesh.face_count, 3)), 1, density=np.full(mesh.vertex_count, 7.0))
+    np.testing.assert_allclose(denser, isotropic, rtol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_wild_fields_still_make_a_metric(seed):
+    rng = np.random.default_rng(seed)
+    arrays = [meshes.needles(3, 20), meshes.icosphere(2), meshes.graded_disk(1e-4), meshes.cube()][seed % 4]
+    mesh = sb.Mesh(*arrays)
+    density = np.exp(rng.normal(size=mesh.vertex_count, scale=3))
+    lengths = sb.anisotropic_metric(mesh, rng.normal(size=(mesh.face_count, 3)), np.exp(rng.normal(scale=3)), density)
+    assert sb.Mesh(mesh.vertices, mesh.triangles, lengths=lengths).is_intrinsic
+
+
+def test_density_is_in_the_areas():
+    mesh = sb.Mesh(*meshes.icosphere(4))
+    density = np.exp(mesh.vertices[:, 0])
+    lengths = sb.anisotropic_metric(mesh, sb.direction_field(mesh, 2), 2, density)
+    areas = sb.Mesh(mesh.vertices, mesh.triangles, lengths=lengths).face_areas / mesh.face_areas
+    wanted = density[mesh.triangles].mean(axis=1)
+    ratio = areas / wanted * (mesh.face_areas @ wanted) / mesh.area
+    assert np.quantile(abs(ratio - 1), 0.99) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ((FIELD, 0), "stretch: wanted positive numbers, got 0.0 at"),
+        ((FIELD, np.inf), "stretch: wanted positive numbers, got inf at"),
+        ((FIELD, np.ones(3)), r"stretch: wanted one number or shape \(162,\), got \(3,\)"),
+        ((FIELD, 2, np.zeros(162)), r"density: wanted positive numbers, got 0.0 at \[0\]"),
+        ((FIELD, 2, np.ones((162, 1))), r"density: wanted one number or shape \(162,\)"),
+        ((np.ones((5, 3)), 2), r"field: wanted shape \(320, 3\), got \(5, 3\)"),
+        ((np.full((320, 3), np.nan), 2), "field: the vector of face 0 is not finite"),
+        ((sb.direction_field(MESH, 4), 2), "field: of symmetry 4"),
+        ((sb.direction_field(sb.Mesh(*meshes.cube()), 2), 2), r"field: wanted shape \(320, 3\)"),
+    ],
+)
+def test_bad_input_is_refused(arguments, says):
+    with pytest.raises(sb.InputError, match=says):
+        sb.anisotropic_metric(MESH, *arguments)
+
+
+def test_a_mesh_with_lengths_of_its_own_is_refused():
+    metric = sb.Mesh(MESH.vertices, MESH.triangles, lengths=MESH.edge_lengths)
+    with pytest.raises(sb.InputError, match="mesh: a field stretches lengths of space, but"):
+        sb.anisotropic_metric(metric, FIELD, 2)
