@@ -48,6 +48,7 @@ class Surface:
     vertex_count: int
     used: Indices | None = None
     kept: Indices | None = None
+    metric: str = ""  # names the lengths by which it is measured, where they are not those of space
 
     @cached_property
     def key(self) -> str:
@@ -56,7 +57,7 @@ class Surface:
         digest.update(np.int64(len(self.vertices)).tobytes())
         digest.update(np.ascontiguousarray(self.vertices).data)
         digest.update(np.ascontiguousarray(self.triangles).data)
-        return digest.hexdigest()
+        return digest.hexdigest() + self.metric
 
     @cached_property
     def area(self) -> float:
@@ -228,6 +229,7 @@ class TessellateRequest:
     marked_edges: Indices | None = None  # (n, 2) of the Blender mesh: some of the count stay on them
     marks: EdgeMarks | None = None  # of the Blender mesh, for the dual mesh to inherit
     paint: CellPaint = CellPaint()
+    field: DirectionFieldRequest | None = None  # along which cells are stretched; None: along none
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     live: LiveCells | None = None  # shown the cells while they are relaxed

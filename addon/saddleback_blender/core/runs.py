@@ -29,6 +29,7 @@ from .solids.crossings import find_crossings
 from .solids.level_lines import LevelLines, isoline_levels, level_lines
 from .solids.rib_surface import RibShape, rib_surface
 from .solids.shell_solid import thicken
+from .stretched import stretched
 from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
 from .surfaces.normals import upright_normals
@@ -83,16 +84,23 @@ def solved_cells(
     sites = None if request.sites is None else compact_points(surface, request.sites, "site")
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
-    graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
-    density = density_of(request.density, surface, settings, mesh, lambda: graph, progress)
+    measured, metric = stretched(request, mesh, progress, cache)
+    graph = graph_of_surface(measured, metric, choice, request.threads, request.disk, progress, cache)
+
+    def graph_in_space() -> Any:
+        if metric is mesh:
+            return graph
+        return graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+
+    density = density_of(request.density, surface, settings, mesh, graph_in_space, progress)
     moves = sites is None or settings.relax_sites
     iterations = settings.iterations if moves else 0
     frame = _frame(request, sites, iterations)
     what = digest(frame, density if sites is None or iterations else None)
-    key = (choice.name(surface), what)
+    key = (choice.name(measured), what)
 
     def of_paint(painted: Density | None) -> Reals | None:
-        return density_of(painted, surface, settings, mesh, lambda: graph, progress)
+        return density_of(painted, surface, settings, mesh, graph_in_space, progress)
 
     def solve() -> Solved:
         return _solve(request, mesh, graph, sites, density, iterations, of_paint, progress)
@@ -107,7 +115,7 @@ def solved_cells(
         key = (key[0], digest(what, density, solved.energy, "live"))
     if request.flowing is not None and sites is not None:
         request.flowing.show(solved.cells, 0)
-    return mesh, density, replace(solved, frame=(choice.name(surface), frame)), key
+    return mesh, density, replace(solved, frame=(choice.name(measured), frame)), key
 
 
 def _frame(request: TessellateRequest, sites: Points | None, iterations: int) -> str:

@@ -21,14 +21,28 @@ from ..bridge.outputs.out_field import ARROWS_ROLE, STREAMLINES_ROLE, write_arro
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import field_runs
 from ..core.progress import Progress
-from ..core.requests import DirectionFieldRequest
+from ..core.requests import DirectionFieldRequest, Surface
 from ..core.results import FieldResult
 from ..core.settings import DirectionFieldSettings
-from ..props import keep_settings, settings_of
+from ..props import keep_settings, kept_settings, settings_of
 from ..props.direction_field import DIRECTION_FIELD
 from .base import ALL_SELECTED, SurfaceOperator
 
 KINDS = {1: "vectors", 2: "lines", 4: "crosses"}
+
+
+def own_field(
+    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, surface: Surface
+) -> DirectionFieldRequest:
+    """Reads the object's own field, for what follows it."""
+    own = kept_settings(source, "direction_field", DirectionFieldSettings)
+    return DirectionFieldRequest(
+        surface,
+        own,
+        read_strokes(context, source, own),
+        read_singularities(context, source, own),
+        painted=read_painted(source, mesh, own),
+    )
 
 
 class FieldOperator(SurfaceOperator):

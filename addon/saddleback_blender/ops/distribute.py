@@ -13,14 +13,12 @@ import numpy as np
 from .. import prefs
 from ..bridge.inputs.classes_in import read_classes, read_kept
 from ..bridge.inputs.density import read_density, read_vertex_group
-from ..bridge.inputs.directions_in import read_directions, read_image_flow, read_painted, read_painted_flow
+from ..bridge.inputs.directions_in import read_directions, read_image_flow, read_painted_flow
 from ..bridge.inputs.mesh_in import mesh_of
 from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.shapes_in import read_templates
-from ..bridge.inputs.singularities_in import read_singularities
 from ..bridge.inputs.source import shared_mesh_warning
-from ..bridge.inputs.strokes_in import read_strokes
 from ..bridge.outputs.hand_edits import accept
 from ..bridge.outputs.out_collection import find_output
 from ..bridge.outputs.out_shape_cut import CUT_ROLE, write_cut
@@ -45,12 +43,13 @@ from ..core.mirrored_runs import shapes_halved
 from ..core.progress import Progress
 from ..core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from ..core.results import CheckResult, DistributeResult
-from ..core.settings import DirectionFieldSettings, DistributeSettings
+from ..core.settings import DistributeSettings
 from ..core.shapes.shape_templates import sized
-from ..props import keep_settings, kept_settings, settings_of
+from ..props import keep_settings, settings_of
 from ..props.distribute import DISTRIBUTE
 from ..props.layers import suffix_of
 from .base import ALL_SELECTED, SurfaceOperator
+from .direction_field import own_field
 from .paint import HelperOperator
 
 
@@ -218,14 +217,7 @@ def _read_field(
         return read_painted_flow(source, mesh, settings.direction_color)
     if settings.field_source == "IMAGE":
         return read_image_flow(source, mesh, settings.direction_image)
-    own = kept_settings(source, "direction_field", DirectionFieldSettings)
-    return DirectionFieldRequest(
-        surface,
-        own,
-        read_strokes(context, source, own),
-        read_singularities(context, source, own),
-        painted=read_painted(source, mesh, own),
-    )
+    return own_field(context, source, mesh, surface)
 
 
 def _read_forbidden(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistributeSettings) -> np.ndarray | None:

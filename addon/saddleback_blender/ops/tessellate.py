@@ -53,6 +53,7 @@ from ..props import existing_group, keep_settings, settings_of
 from ..props.kept_sites import keep_sites, kept_cells
 from ..props.tessellate import TESSELLATE
 from .base import ALL_SELECTED, SurfaceOperator
+from .direction_field import own_field
 
 # Sources of density that a brush changes.
 PAINTED = ("VERTEX_GROUP", "ATTRIBUTE", "COLOR", "MASK", "SPREAD")
@@ -90,6 +91,7 @@ def read_request(
         marked_edges=marks.edges if marks is not None and settings.hold_marked else None,
         marks=marks,
         paint=read_cell_paint(source, mesh, settings) if has_mesh else CellPaint(),
+        field=None if settings.stretch == 1.0 else own_field(context, source, mesh, surface),
         threads=prefs.threads(context),
         disk=prefs.disk_cache(context, settings.cache_on_disk),
     )

@@ -117,6 +117,16 @@ TESSELLATE: dict[str, Any] = {
         soft_max=200,
         options={"SKIP_SAVE"},
     ),
+    "stretch": FloatProperty(
+        name="Stretch",
+        description="How many times as long the cells are along the object's direction field as they are wide",
+        default=1.0,
+        min=0.1,
+        max=10.0,
+        soft_min=1.0,
+        soft_max=5.0,
+        options={"SKIP_SAVE"},
+    ),
     "starts": IntProperty(
         name="Starts",
         description="Make the cells so many times, from seeds that follow one another, and take the most even ones",

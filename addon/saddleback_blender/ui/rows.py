@@ -32,6 +32,7 @@ def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     row = layout.row()
     row.active = is_placed(settings) or settings.relax_sites
     row.prop(settings, "evenness")
+    layout.prop(settings, "stretch")
 
 
 def is_placed(settings: Any) -> bool:

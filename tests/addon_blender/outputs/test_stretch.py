@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cells that are longer than wide, along the object's direction field."""
+
+import bpy
+import numpy as np
+import pytest
+from scenes import add_object, attribute, fingerprint, grid, grid_arrays, positions, sphere
+from test_operators_direction_field import vectors
+
+QUICK = {"count": 60, "iterations": 20}
+
+
+def lengths_of(item, directions):
+    """(n,) how many times as long as wide the cells of a plate are along directions (V, 2), by its vertices."""
+    cell, places = attribute(item, "saddleback_cell"), positions(item.data)[:, :2]
+    found = []
+    for number in range(cell.max() + 1):
+        own = cell == number
+        if own.sum() < 30:
+            continue
+        along = directions[own].mean(axis=0)
+        along /= np.linalg.norm(along)
+        offset = places[own] - places[own].mean(axis=0)
+        found.append(np.std(offset @ along) / np.std(offset @ [-along[1], along[0]]))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("stretch", [1.0, 3.0])
+def test_cells_are_as_many_times_as_long_as_wide(stretch):
+    item = grid(n=70)
+    item.saddleback.direction_field.turn = 0.5
+    assert bpy.ops.saddleback.direction_field() == {"FINISHED"}
+    directions = vectors(item)[:, :2]
+    assert bpy.ops.saddleback.tessellate(stretch=stretch, **QUICK) == {"FINISHED"}
+    found = lengths_of(item, directions)
+    assert len(found) > 50
+    assert abs(np.exp(np.log(found).mean()) / stretch - 1) < 0.15
+    assert item.saddleback.tessellate.stretch == pytest.approx(stretch)
+
+
+def test_all_outputs_are_made_of_stretched_cells():
+    item = sphere(subdivisions=4)
+    made = {"make_edges": True, "make_cells": True, "make_centers": True, "make_dual": True, "make_shell": True}
+    assert bpy.ops.saddleback.tessellate(stretch=2.0, gap=0.02, thickness=0.03, **made, **QUICK) == {"FINISHED"}
+    roles = {child.get("saddleback_role") for child in item.children}
+    assert {"edges", "cells", "centers", "dual", "shell"} <= roles
+    dual = next(child for child in item.children if child["saddleback_role"] == "dual").data
+    assert len(dual.vertices) - len(dual.edges) + len(dual.polygons) == 2
+    quads = bpy.ops.saddleback.tessellate(stretch=2.0, make_dual=True, dual_faces="QUADS", **QUICK)
+    assert quads == {"FINISHED"}
+    polygons = bpy.ops.saddleback.tessellate(stretch=2.0, make_cells=True, cell_faces="ONE", **QUICK)
+    assert polygons == {"FINISHED"}
+
+
+def test_without_stretch_the_field_does_not_matter():
+    item = sphere(subdivisions=3)
+    bpy.ops.saddleback.tessellate(**QUICK)
+    before = attribute(item, "saddleback_cell")
+    item.saddleback.direction_field.symmetry = "4"
+    bpy.ops.saddleback.tessellate(stretch=1.0, **QUICK)
+    assert np.array_equal(before, attribute(item, "saddleback_cell"))
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"hold_boundary": True}, "stretched cells cannot be kept on lines"),
+        ({"hold_sharp": True}, "stretched cells cannot be kept on lines"),
+        ({"mirror_x": True}, "stretched cells cannot be kept on lines, nor mirrored"),
+        ({}, "its direction field has crosses, along which of two lines shall cells be long"),
+    ],
+)
+def test_what_cannot_be_stretched_is_told(options, says):
+    vertices, faces = grid_arrays(12)
+    item = add_object("Plate", vertices - (0.5, 0.5, 0), faces)
+    item.saddleback.direction_field.symmetry = "2" if options else "4"
+    before = fingerprint()
+    with pytest.raises(RuntimeError, match=says):
+        bpy.ops.saddleback.tessellate(stretch=2.0, **options, **QUICK)
+    assert fingerprint() == before
