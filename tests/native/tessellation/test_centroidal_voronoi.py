@@ -6,6 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -518,6 +519,41 @@ def test_a_closed_curve_holds_given_sites() -> None:
     gaps = np.append(np.diff(angles), angles[0] + 2 * np.pi - angles[-1])
     assert len(gaps) > 10
     assert gaps.max() < 2.2 * gaps.min()  # a free site may have come between two
+
+
+@pytest.mark.parametrize("spare", [-1, 0, 1, 30])
+def test_parts_beside_curves_keep_a_site(spare: int) -> None:
+    """Specks beside the side of a square, each nearer to its sites than all else: their only sites are not left out."""
+    vertices, triangles = meshes.grid(10, 10)
+    specks = 12
+    corners = np.array([[0.0, 0, 0], [1e-3, 0, 0], [0, 1e-3, 0]])
+    more = [corners + [(i + 0.5) / specks, -1e-2, 0] for i in range(specks)]
+    ends = np.arange(3 * specks).reshape(-1, 3) + len(vertices)
+    mesh = sb.Mesh(np.vstack([vertices, *more]), np.vstack([triangles, ends]).astype(np.int32))
+    sides = square_sides(mesh)
+    graph = sb.SaddleVertexGraph(mesh, k=10)
+    with pytest.raises(sb.InputError, match=r"count: the curves (and the parts without any )?need") as refusal:
+        sb.centroidal_voronoi(graph, count=specks + 4, curves=sides, max_iterations=3)
+    needed = int(str(refusal.value).split("need ")[1].split()[0])
+    count = next(
+        count for count in range(needed, needed + 100) if "need" not in refusal_of(graph, count=count, curves=sides)
+    )
+    if spare < 0:
+        assert "need" in refusal_of(graph, count=count - 1, curves=sides)
+        return
+    relaxed = sb.centroidal_voronoi(graph, count=count + spare, curves=sides, max_iterations=3)
+    assert len(relaxed.sites) == count + spare
+    parts = mesh.components[mesh.triangles[relaxed.sites.faces, 0]]
+    assert set(parts.tolist()) == set(range(specks + 1))
+    assert relaxed.cells.areas.sum() == pytest.approx(mesh.area, rel=1e-9)
+
+
+def refusal_of(graph: sb.SaddleVertexGraph, **arguments: Any) -> str:
+    try:
+        sb.centroidal_voronoi(graph, max_iterations=0, **arguments)
+    except sb.InputError as refusal:
+        return str(refusal)
+    return ""
 
 
 def test_bad_curves() -> None:

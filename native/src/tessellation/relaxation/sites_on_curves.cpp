@@ -142,7 +142,8 @@ double along_at(const SurfaceCurve& curve, const std::vector<double>& sums, doub
   return segment.start + segment.length * (sum - sums[i]) / (sums[i + 1] - sums[i]);
 }
 
-/// Each site takes the place of a point: those nearest to any site are left out.
+/// Each site takes the place of a point: those nearest to any site are left out, but none that its part has no other
+/// instead of. \throw InputError where that leaves too many.
 SurfacePoints away_from(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points) {
   std::vector<Vec3> places;
   for (const SurfacePoint& site : sites) places.push_back(position(mesh, site));
@@ -154,7 +155,21 @@ SurfacePoints away_from(const Mesh& mesh, const SurfacePoints& sites, const Surf
     nearest.emplace_back(least, i);
   }
   std::ranges::sort(nearest);
-  nearest.erase(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(sites.size()));
+  const auto part_of = [&](const SurfacePoint& point) { return mesh.component_of(mesh.triangles()[point.face][0]); };
+  std::vector<Index> in_part(mesh.component_count(), 0);
+  for (const SurfacePoint& site : sites) ++in_part[part_of(site)];
+  for (const SurfacePoint& point : points) ++in_part[part_of(point)];
+  std::size_t surplus = sites.size();
+  std::erase_if(nearest, [&](const auto& point) {
+    Index& others = in_part[part_of(points[point.second])];
+    if (surplus == 0 || others == 1) return false;
+    --surplus;
+    --others;
+    return true;
+  });
+  if (surplus > 0)
+    throw InputError(message("count: the curves and the parts without any need ", points.size() + surplus,
+                             " sites; got ", points.size()));
   std::ranges::sort(nearest, {}, &std::pair<double, Index>::second);
   SurfacePoints rest;
   for (const auto& [distance, i] : nearest) rest.push_back(points[i]);
