@@ -9,9 +9,7 @@ import pytest
 import saddleback as sb
 
 WINDOWS = {"show"}  # opens one for what it takes
-CALLS = sorted(
-    name for name in set(sb.__all__) - WINDOWS if callable(getattr(sb, name)) and not name.endswith("Error")
-)
+CALLS = sorted(name for name in set(sb.__all__) - WINDOWS if callable(getattr(sb, name)) and not name.endswith("Error"))
 MOST = 6  # arguments by position: no call needs more
 
 
