@@ -32,7 +32,6 @@ def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     row = layout.row()
     row.active = is_placed(settings) or settings.relax_sites
     row.prop(settings, "evenness")
-    layout.prop(settings, "stretch")
 
 
 def is_placed(settings: Any) -> bool:
@@ -42,6 +41,7 @@ def is_placed(settings: Any) -> bool:
 
 def draw_sites_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
     """Draws how sites are found and evened out in detail."""
+    layout.prop(settings, "stretch")
     column = layout.column()
     column.active = is_placed(settings) or settings.relax_sites
     if is_placed(settings):
