@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Sends what a pytest session finds, test by test, to the pytest that started its process.
 
-One JSON object a line, through the file descriptor that SADDLEBACK_REPORTS names.
+One JSON object a line, into the file that SADDLEBACK_REPORTS names.
 """
 
 from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,14 +17,13 @@ import pytest
 class ReportSender:
     """The plugin of the inner session."""
 
-    def __init__(self, config: pytest.Config, descriptor: int) -> None:
+    def __init__(self, config: pytest.Config, file: str) -> None:
         self.config = config
-        self.stream = os.fdopen(descriptor, "w", encoding="utf-8")
+        self.file = Path(file)
 
     def send(self, kind: str, content: Any) -> None:
-        json.dump({kind: content}, self.stream)
-        self.stream.write("\n")
-        self.stream.flush()
+        with self.file.open("a", encoding="utf-8") as stream:
+            stream.write(json.dumps({kind: content}) + "\n")
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         self.send("collected", len(session.items))
@@ -49,6 +49,6 @@ class StreamPlugin:
     """Given to pytest.main; makes the sender once there is a configuration."""
 
     def pytest_configure(self, config: pytest.Config) -> None:
-        descriptor = os.environ.get("SADDLEBACK_REPORTS")
-        if descriptor:
-            config.pluginmanager.register(ReportSender(config, int(descriptor)), "saddleback-report-sender")
+        file = os.environ.get("SADDLEBACK_REPORTS")
+        if file:
+            config.pluginmanager.register(ReportSender(config, file), "saddleback-report-sender")

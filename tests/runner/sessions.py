@@ -3,6 +3,9 @@
 
 The process runs its own pytest (tests/run_in_blender.py) over tests/addon_blender; its reports arrive one by one and
 are shown, counted and summed up as if they were this session's own, with the Blender's name before the test's.
+
+A Blender runs beside the session's own tests, which keep one core busy as it does; once those are over, two run at a
+time. What they report waits until its turn.
 """
 
 from __future__ import annotations
@@ -10,11 +13,10 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import selectors
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SESSION_LIMIT = 1800
 """Seconds after which a Blender that says nothing more is ended, so that a hang becomes a failure."""
+CLOSING_LIMIT = 60
+"""Seconds that a Blender has to close down after its tests."""
+LOOKS_EVERY = 0.1
+"""Seconds between two looks at what a Blender reports."""
 
 
 @dataclass(frozen=True)
@@ -41,19 +47,36 @@ class SessionsPlugin:
     def __init__(self, blenders: list[Blender], arguments: list[str]) -> None:
         self.blenders = blenders
         self.arguments = arguments
+        self.sessions: list[BlenderSession] = []
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, session: pytest.Session, items: list[pytest.Item]) -> None:
-        items += [
+        self.sessions = [
             BlenderSession.from_parent(session, blender=blender, arguments=self.arguments) for blender in self.blenders
         ]
+        items += self.sessions
+
+    def pytest_runtest_logstart(self) -> None:
+        self.start(1)
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> bool | None:
         if not isinstance(item, BlenderSession):
             return None
-        item.run_all()
+        item.pass_all_on(lambda: self.start(2))
         return True
+
+    def pytest_sessionfinish(self) -> None:
+        for item in self.sessions:
+            item.stop()
+
+    def start(self, most: int) -> None:
+        """Start the next Blender where fewer than `most` run."""
+        running = sum(item.is_running for item in self.sessions)
+        for item in self.sessions:
+            if running < most and not item.is_started:
+                item.start()
+                running += 1
 
 
 class BlenderSession(pytest.Item):
@@ -65,6 +88,8 @@ class BlenderSession(pytest.Item):
         self.arguments = arguments
         self.finished: int | None = None
         self.running = ""
+        self.process: subprocess.Popen[str] | None = None
+        self.files = contextlib.ExitStack()
 
     def runtest(self) -> None:
         raise NotImplementedError("a session reports for its tests")
@@ -72,56 +97,75 @@ class BlenderSession(pytest.Item):
     def reportinfo(self) -> tuple[Path, None, str]:
         return ROOT / "tests", None, self.name
 
-    def run_all(self) -> None:
-        """Run the process to its end and pass on all that it reports; whatever else goes wrong is a failure too."""
-        start = time.time()
-        with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
-            code = None
-            try:
-                with self._process(output) as (process, reports):
-                    for line in reports:
-                        self._pass_on(json.loads(line))
-                        if self.session.shouldstop or self.session.shouldfail:
-                            process.terminate()
-                            return
-                    code = process.wait(timeout=60)  # the reports have ended: only closing down is left
-            except subprocess.TimeoutExpired:
-                pass
-            output.seek(0)
-            problem = self._problem(code)
-            if problem:
-                tail = "".join(output.readlines()[-80:])
-                self._report_failure(f"{problem}\n--- last output ---\n{tail}", start)
+    @property
+    def is_started(self) -> bool:
+        return self.process is not None
 
-    @contextlib.contextmanager
-    def _process(self, output: Any) -> Iterator[tuple[subprocess.Popen[str], Iterator[str]]]:
-        reading, writing = os.pipe()
+    @property
+    def is_running(self) -> bool:
+        return self.process is not None and self.process.poll() is None
+
+    def start(self) -> None:
+        folder = Path(self.files.enter_context(tempfile.TemporaryDirectory(prefix="saddleback-blender-")))
+        resources = folder / "resources"
+        resources.mkdir()
+        self.reports = folder / "reports"
+        self.reports.touch()
+        self.output = folder / "output"
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
-        with tempfile.TemporaryDirectory(prefix="saddleback-blender-") as resources:
-            environment |= {
-                "BLENDER_USER_RESOURCES": resources,
-                "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-                "SADDLEBACK_REPORTS": str(writing),
-                **self.blender.environment,
-            }
-            process = subprocess.Popen(
-                [*self.blender.command, *self.arguments],
-                cwd=ROOT,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                pass_fds=[writing],
-                text=True,
-            )
-            os.close(writing)
-            try:
-                with os.fdopen(reading, encoding="utf-8") as reports:
-                    yield process, _lines(reports, SESSION_LIMIT)
-            finally:
-                if process.poll() is None:
-                    process.kill()
-                    process.wait()
+        environment |= {
+            "BLENDER_USER_RESOURCES": str(resources),
+            "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+            "SADDLEBACK_REPORTS": str(self.reports),
+            **self.blender.environment,
+        }
+        self.process = subprocess.Popen(
+            [*self.blender.command, *self.arguments],
+            cwd=ROOT,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=self.files.enter_context(self.output.open("w")),
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def stop(self) -> None:
+        """End what still runs."""
+        if self.process is not None and self.is_running:
+            self.process.kill()
+            self.process.wait()
+        self.files.close()
+
+    def pass_all_on(self, start_others: Callable[[], None]) -> None:
+        """Report all that the process reports; whatever else goes wrong with it is a failure too."""
+        begin = time.time()
+        for line in self._lines(start_others):
+            self._pass_on(json.loads(line))
+            if self.session.shouldstop or self.session.shouldfail:
+                return
+        problem = self._problem()
+        if problem:
+            tail = "\n".join(self.output.read_text(encoding="utf-8", errors="replace").splitlines()[-80:])
+            self._report_failure(f"{problem}\n--- last output ---\n{tail}", begin)
+        self.stop()
+
+    def _lines(self, start_others: Callable[[], None]) -> Iterator[str]:
+        """Yield the lines of the reports until the process has ended or says nothing more for too long."""
+        start_others()
+        with self.reports.open(encoding="utf-8") as stream:
+            part, last = "", time.monotonic()
+            while time.monotonic() - last < (SESSION_LIMIT if self.finished is None else CLOSING_LIMIT):
+                was_running = self.is_running
+                text = stream.read()
+                *complete, part = (part + text).split("\n")
+                yield from complete
+                if text:
+                    last = time.monotonic()
+                elif not was_running:
+                    return
+                else:
+                    start_others()
+                    time.sleep(LOOKS_EVERY)
 
     def _pass_on(self, message: dict[str, Any]) -> None:
         ((kind, content),) = message.items()
@@ -143,8 +187,9 @@ class BlenderSession(pytest.Item):
         elif kind == "finished":
             self.finished = content
 
-    def _problem(self, code: int | None) -> str:
+    def _problem(self) -> str:
         """Say what is wrong with the session as a whole, "" when nothing is."""
+        code = self.process.poll() if self.process is not None else None
         if code is None:
             return f"{self.name} did not end"
         if self.finished is None:
@@ -172,19 +217,3 @@ class BlenderSession(pytest.Item):
 
     def _named(self, nodeid: str) -> str:
         return f"{self.name}: {nodeid}"
-
-
-def _lines(stream: Any, limit: float) -> Iterator[str]:
-    """Yield the lines until the other end closes; raise TimeoutExpired when none comes for `limit` seconds."""
-    with selectors.DefaultSelector() as selector:
-        selector.register(stream, selectors.EVENT_READ)
-        buffer = b""
-        while True:
-            if not selector.select(timeout=limit):
-                raise subprocess.TimeoutExpired("the tests inside Blender", limit)
-            block = os.read(stream.fileno(), 65536)
-            if not block:
-                return
-            *complete, buffer = (buffer + block).split(b"\n")
-            for line in complete:
-                yield line.decode("utf-8")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import textwrap
@@ -51,14 +52,17 @@ def test_only_what_is_needed_is_installed(given, needs):
     assert split(given, ROOT).needs == needs
 
 
-def outer(tmp_path: Path, inner_test: str, *arguments: str, ending: str = "") -> subprocess.CompletedProcess[str]:
-    """Run an outer session whose only "Blender" is this Python, over one inner test file."""
+def outer(
+    tmp_path: Path, inner_test: str, *arguments: str, ending: str = "", own_test: str = "", blenders: int = 1
+) -> subprocess.CompletedProcess[str]:
+    """Run an outer session whose only "Blenders" are this Python, over one inner test file."""
     (tmp_path / "test_inner.py").write_text(textwrap.dedent(inner_test))
     (tmp_path / "inner.py").write_text(
         textwrap.dedent(
             f"""
             import os, sys, pytest
             sys.path.insert(0, {str(ROOT)!r})
+            os.chdir({str(tmp_path)!r})
             from tests.runner.report_stream import StreamPlugin
             code = pytest.main(sys.argv[1:], plugins=[StreamPlugin()])
             {ending or "sys.exit(int(code))"}
@@ -73,11 +77,13 @@ def outer(tmp_path: Path, inner_test: str, *arguments: str, ending: str = "") ->
             from tests.runner.sessions import Blender, SessionsPlugin
             from pathlib import Path
             here = Path({str(tmp_path)!r})
-            (here / "nothing").mkdir(exist_ok=True)
+            (here / "own").mkdir(exist_ok=True)
+            (here / "own/test_own.py").write_text({textwrap.dedent(own_test)!r})
             blender = Blender("pretended", (sys.executable, str(here / "inner.py")))
             options = sys.argv[1:]
-            plugin = SessionsPlugin([blender], [*options, str(here / "test_inner.py"), "-p", "no:cacheprovider"])
-            sys.exit(pytest.main([*options, "-p", "no:cacheprovider", str(here / "nothing")], plugins=[plugin]))
+            inside = [*options, str(here / "test_inner.py"), "-p", "no:cacheprovider"]
+            plugin = SessionsPlugin([blender] * {blenders}, inside)
+            sys.exit(pytest.main([*options, "-p", "no:cacheprovider", str(here / "own")], plugins=[plugin]))
             """
         )
     )
@@ -132,3 +138,59 @@ def test_a_wrong_exit_code_is_a_failure(tmp_path):
     done = outer(tmp_path, "def test_good(): pass", ending="sys.exit(9)")
     assert done.returncode == 1
     assert "ended with code 0, but the process with 9" in done.stdout
+
+
+WAITS_FOR = """
+    import time
+    from pathlib import Path
+
+    def wait_for(name):
+        end = time.monotonic() + 60
+        while not Path(name).exists():
+            assert time.monotonic() < end
+            time.sleep(0.01)
+"""
+
+
+def test_a_blender_runs_beside_the_own_tests(tmp_path):
+    inside = WAITS_FOR + "\n    def test_inside(): Path('inside').touch(); wait_for('own-tests')"
+    own = WAITS_FOR + "\n    def test_own(): wait_for('inside'); Path('own-tests').touch()"
+    done = outer(tmp_path, inside, own_test=own)
+    assert done.returncode == 0 and "2 passed" in summary(done)
+
+
+def test_two_blenders_run_at_a_time(tmp_path):
+    """Each waits until another one has begun as well, and tells how many are at work."""
+    inside = """
+    import os, time
+    from pathlib import Path
+
+    def test_inside():
+        Path(f"begun-{os.getpid()}").touch()
+        end = time.monotonic() + 60
+        while len(list(Path().glob("begun-*"))) < 2:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        Path(f"at-work-{os.getpid()}").touch()
+        time.sleep(0.5)
+        assert len(list(Path().glob("at-work-*"))) <= 2
+        Path(f"at-work-{os.getpid()}").unlink()
+    """
+    done = outer(tmp_path, inside, blenders=3)
+    assert done.returncode == 0 and "3 passed" in summary(done)
+
+
+def test_a_stopped_session_ends_its_blenders(tmp_path):
+    inside = """
+    import os, time
+    from pathlib import Path
+
+    def test_inside():
+        Path("pid").write_text(str(os.getpid()))
+        time.sleep(600)
+    """
+    own = WAITS_FOR + "\n    def test_own(): wait_for('pid'); assert False"
+    done = outer(tmp_path, inside, "-x", own_test=own)
+    assert done.returncode == 1
+    with pytest.raises(ProcessLookupError):
+        os.kill(int((tmp_path / "pid").read_text()), 0)
