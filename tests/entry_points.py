@@ -284,6 +284,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "BarredMesh.values_to_barred": lambda: at.barred.values_to_barred(at.vertices[:, 0]),
         "add_barriers": lambda: sb.add_barriers(at.mesh, edges=at.mesh.edges[::7], curves=[at.curve]),
         "anisotropic_metric": lambda: sb.anisotropic_metric(at.mesh, at.lines, 2),
+        "curvature_metric": lambda: sb.curvature_metric(at.mesh),
         "arcs_across": lambda: sb.arcs_across(at.parts[0], 1),
         "unite_arcs": lambda **more: sb.unite_arcs(at.parts[0], at.across, **more),
         "SaddleVertexGraph.arcs": lambda: at.graph.arcs(),

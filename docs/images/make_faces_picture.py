@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes docs/images/tessellation-faces.jpg, the faces that Tessellate can make of cells: with Debian's Blender, call
+"""Makes the pictures of the faces that Tessellate can make of cells, docs/images/tessellation-faces.jpg and
+tessellation-curvature.jpg: with Debian's Blender, call
 
 SADDLEBACK_PYTHONPATH=build/python blender -b --factory-startup -P docs/images/make_faces_picture.py
 """
@@ -14,7 +15,14 @@ import bpy
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "addon"), *os.environ.get("SADDLEBACK_PYTHONPATH", "").split(os.pathsep)]
-KINDS = ({"make_cells": True, "cell_faces": "ONE"}, {"make_dual": True}, {"make_dual": True, "dual_faces": "QUADS"})
+PICTURES: dict[str, tuple[dict[str, object], ...]] = {
+    "faces": (
+        {"make_cells": True, "cell_faces": "ONE"},
+        {"make_dual": True},
+        {"make_dual": True, "dual_faces": "QUADS"},
+    ),
+    "curvature": tuple({"make_dual": True, "follow_curvature": follow} for follow in (0.0, 0.5, 1.0)),
+}
 
 
 def material(name: str, color: tuple[float, float, float]) -> bpy.types.Material:
@@ -39,11 +47,10 @@ def head(place: float, settings: dict[str, object]) -> None:
         lines.thickness, lines.use_replace, lines.use_even_offset, lines.material_offset = 0.012, False, False, 1
 
 
-def main() -> None:
+def shoot(name: str) -> None:
     """Three heads side by side."""
-    bpy.ops.preferences.addon_enable(module="saddleback_blender")
     bpy.ops.wm.read_homefile(use_empty=True)
-    for place, settings in zip((-2.5, 0.0, 2.5), KINDS, strict=True):
+    for place, settings in zip((-2.5, 0.0, 2.5), PICTURES[name], strict=True):
         head(place, settings)
     scene = bpy.context.scene
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
@@ -56,8 +63,16 @@ def main() -> None:
     scene.view_settings.view_transform = "Standard"
     scene.render.resolution_x, scene.render.resolution_y = 1200, 400
     scene.render.image_settings.file_format = "JPEG"
-    scene.render.filepath = str(ROOT / "docs/images/tessellation-faces.jpg")
+    scene.render.filepath = str(ROOT / f"docs/images/tessellation-{name}.jpg")
     bpy.ops.render.render(write_still=True)
+
+
+def main() -> None:
+    """Makes the pictures that are named, or all."""
+    bpy.ops.preferences.addon_enable(module="saddleback_blender")
+    named = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    for name in named or PICTURES:
+        shoot(name)
 
 
 main()

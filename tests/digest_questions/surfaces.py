@@ -289,6 +289,16 @@ def even_cells_options(case: meshes.Case, way: Way, **options: Any) -> Iterable[
 
 
 @asked(FEW)
+def of_a_metric(case: meshes.Case, way: Way) -> Iterable[object]:
+    lengths = sb.curvature_metric(case.mesh, 0.3)
+    mesh = sb.Mesh(case.vertices, case.triangles, lengths=lengths)
+    graph = sb.SaddleVertexGraph(mesh, k=30, threads=way.threads, device=way.device)
+    result = sb.centroidal_voronoi(graph, count=20, max_iterations=8, threads=way.threads, device=way.device)
+    field = sb.direction_field(mesh, 4)
+    return [lengths, sb.exact_distances(mesh, 0), *graph.arcs(), *even_cells_of(result), field.angles]
+
+
+@asked(FEW)
 def even_cells_held(case: meshes.Case, way: Way) -> Iterable[object]:
     curves = sb.feature_curves(case.mesh, 0.6)[:3]
     sites = sb.sample(case.mesh, 12, seed=8)

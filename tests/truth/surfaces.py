@@ -449,6 +449,24 @@ def shapes_without_places(rng: Random) -> None:
         assert report.ok, f"{report} on {'the surface' if surface is mesh else 'the surface elsewhere'}"
 
 
+@guards("curvature_metric")
+def bent_lengths(mesh: sb.Mesh, rng: Random) -> None:
+    """Edges are as long as in six dimensions, of places and normals by numpy; moving and scaling change no ratio."""
+    weight = float(rng.choice([0.0, 0.1, 3.0]))
+    found = sb.curvature_metric(mesh, weight)
+    assert sb.Mesh(mesh.vertices, mesh.triangles, lengths=found).is_intrinsic
+    corners = mesh.vertices[mesh.triangles]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.stack([np.bincount(mesh.triangles.ravel(), np.repeat(areas[:, k], 3)) for k in range(3)], axis=1)
+    size = np.linalg.norm(normals, axis=1)
+    clear = size > 1e-6 * np.bincount(mesh.triangles.ravel(), np.repeat(np.linalg.norm(areas, axis=1), 3))
+    normals /= np.where(size > 0, size, 1)[:, None]
+    turns = np.linalg.norm(np.roll(normals[mesh.triangles], -1, axis=1) - normals[mesh.triangles], axis=2)
+    true = np.hypot(sides(mesh.vertices, mesh.triangles), weight * math.sqrt(mesh.area) * turns)
+    known = clear[mesh.triangles] & np.roll(clear[mesh.triangles], -1, axis=1)
+    assert np.allclose(found[known], true[known], rtol=1e-9, atol=1e-9 * float(true.max())), f"{found} for {true}"
+
+
 @guards("anisotropic_metric")
 def stretched_lengths(mesh: sb.Mesh, rng: Random) -> None:
     """Whatever field and stretch, lengths of a metric; where one face is alone, those that its tensor says, to 1e-9."""

@@ -20,6 +20,7 @@ from .fields.curve_points import curves_on_surface, points_along
 from .flowing_cells import UNSEEN
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .lengths import RIB_SHARE
+from .metrics import measured
 from .progress import Progress
 from .requests import Density, DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
 from .results import CellsResult, DistanceResult, Dual, LampShell, Reals, SurfacePolygons
@@ -29,7 +30,6 @@ from .solids.crossings import find_crossings
 from .solids.level_lines import LevelLines, isoline_levels, level_lines
 from .solids.rib_surface import RibShape, rib_surface
 from .solids.shell_solid import thicken
-from .stretched import stretched
 from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
 from .surfaces.normals import upright_normals
@@ -84,8 +84,8 @@ def solved_cells(
     sites = None if request.sites is None else compact_points(surface, request.sites, "site")
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
-    measured, metric = stretched(request, mesh, progress, cache)
-    graph = graph_of_surface(measured, metric, choice, request.threads, request.disk, progress, cache)
+    space, metric = measured(request, mesh, progress, cache)
+    graph = graph_of_surface(space, metric, choice, request.threads, request.disk, progress, cache)
 
     def graph_in_space() -> Any:
         if metric is mesh:
@@ -97,7 +97,7 @@ def solved_cells(
     iterations = settings.iterations if moves else 0
     frame = _frame(request, sites, iterations)
     what = digest(frame, density if sites is None or iterations else None)
-    key = (choice.name(measured), what)
+    key = (choice.name(space), what)
 
     def of_paint(painted: Density | None) -> Reals | None:
         return density_of(painted, surface, settings, mesh, graph_in_space, progress)
@@ -115,7 +115,7 @@ def solved_cells(
         key = (key[0], digest(what, density, solved.energy, "live"))
     if request.flowing is not None and sites is not None:
         request.flowing.show(solved.cells, 0)
-    return mesh, density, replace(solved, frame=(choice.name(measured), frame)), key
+    return mesh, density, replace(solved, frame=(choice.name(space), frame)), key
 
 
 def _frame(request: TessellateRequest, sites: Points | None, iterations: int) -> str:

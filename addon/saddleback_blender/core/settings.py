@@ -60,6 +60,7 @@ class TessellateSettings(DensitySettings, PatternSettings, BarrierSettings):
     method: str = "LBFGS"  # LBFGS, LLOYD
     iterations: int = 15
     stretch: float = 1.0  # cells are so many times as long along the object's direction field as they are wide
+    follow_curvature: float = 0.0  # 1: cells are small where the surface bends, and short across ridges
     starts: int = 1  # relaxations from so many samples; the best is taken
     annealing: int = 0  # steps in which the sites are shaken before the iterations
     sites_source: str = "COUNT"  # COUNT, SIZE, SELECTED, OBJECT

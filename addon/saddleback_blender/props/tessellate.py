@@ -127,6 +127,15 @@ TESSELLATE: dict[str, Any] = {
         soft_max=5.0,
         options={"SKIP_SAVE"},
     ),
+    "follow_curvature": FloatProperty(
+        name="Follow Curvature",
+        description="How much smaller the cells are where the surface bends, and shorter across ridges than along them",
+        default=0.0,
+        min=0.0,
+        max=3.0,
+        soft_max=1.0,
+        options={"SKIP_SAVE"},
+    ),
     "starts": IntProperty(
         name="Starts",
         description="Make the cells so many times, from seeds that follow one another, and take the most even ones",

@@ -42,6 +42,7 @@ def is_placed(settings: Any) -> bool:
 def draw_sites_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
     """Draws how sites are found and evened out in detail."""
     layout.prop(settings, "stretch")
+    layout.prop(settings, "follow_curvature")
     column = layout.column()
     column.active = is_placed(settings) or settings.relax_sites
     if is_placed(settings):

@@ -123,7 +123,7 @@ from saddleback._saddleback import (
 )
 from saddleback.density_match import DensityMatch, density_match
 from saddleback.mesh_files import write_curves, write_mesh
-from saddleback.metrics import anisotropic_metric
+from saddleback.metrics import anisotropic_metric, curvature_metric
 from saddleback.placement_files import read_placement_field, read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.quality_plot import quality_plot
@@ -209,6 +209,7 @@ __all__ = [
     "check_distribution",
     "connected_parts",
     "cuda_status",
+    "curvature_metric",
     "curve_through",
     "cut_at_level",
     "density_by_curvature",

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Metrics of a surface's own, for `Mesh(..., lengths=)`: of cells stretched along a field, and of any other tensor."""
+"""Metrics of a surface's own, for `Mesh(..., lengths=)`: of cells stretched along a field, or small where it bends."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from saddleback._saddleback import DirectionField, InputError, Mesh
+from saddleback._saddleback import DirectionField, InputError, Mesh, vertex_normals
 
 _Floats = NDArray[np.float64]
 
@@ -76,6 +76,40 @@ def anisotropic_metric(
             return lengths
         again = np.unique(edge[small])
         mixed[again] = np.minimum(1, mixed[again] + _STEP)
+
+
+def curvature_metric(mesh: Mesh, weight: float = 0.1) -> _Floats:
+    """Lengths by which round cells are, in space, small where the surface bends, and long where it bends one way only.
+
+    With ``sb.Mesh(mesh.vertices, mesh.triangles, lengths=sb.curvature_metric(mesh))`` a dual mesh of so many vertices
+    is nearer to the surface than one of even triangles, twice to three times on usual scans.
+
+    Args:
+        mesh: as it is in space.
+        weight: >= 0, of the normals: what a turn by a radian counts as, in parts of the root of the mesh's area. 0 for
+            the lengths of space; beyond some 0.3 flat parts have too few cells.
+
+    Returns
+    -------
+        (F, 3) float64: lengths from corner i to corner i + 1.
+
+    Raises
+    ------
+        InputError: a weight that is negative or not finite, a mesh that has lengths of its own.
+
+    Notes
+    -----
+    The lengths of the surface of places and weighted normals in six dimensions [levy2013]; normals are the vertices',
+    weighted by area. O(F).
+    """
+    if mesh.is_intrinsic:
+        raise InputError("mesh: normals are those of space, but this mesh has lengths of its own")
+    if not 0 <= weight < np.inf:
+        raise InputError(f"weight: wanted 0 or more, got {weight}")
+    normals = weight * np.sqrt(mesh.area) * vertex_normals(mesh.vertices, mesh.triangles)
+    corners = np.concatenate([mesh.vertices, normals], axis=1)[mesh.triangles]
+    lengths: _Floats = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    return lengths
 
 
 def _sixteen_squared_areas(squares: _Floats) -> _Floats:

@@ -111,7 +111,76 @@ def test_bad_input_is_refused(arguments, says):
         sb.anisotropic_metric(MESH, *arguments)
 
 
+def test_where_it_is_flat_nothing_bends():
+    mesh = sb.Mesh(*meshes.grid(9, 7, jitter=0.3))
+    corners = mesh.vertices[mesh.triangles]
+    in_space = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    np.testing.assert_allclose(sb.curvature_metric(mesh, 5.0), in_space, rtol=1e-12)
+
+
+def test_around_a_tube_lengths_grow_by_the_turn_of_its_normals_and_along_it_by_nothing():
+    count, radius, weight = 40, 0.5, 0.2
+    mesh = sb.Mesh(*meshes.cylinder(count, 12, radius=radius, height=3.0))
+    found = sb.curvature_metric(mesh, weight)
+    corners = mesh.vertices[mesh.triangles]
+    ways = np.roll(corners, -1, axis=1) - corners
+    inside = (abs(corners[..., 2] - corners[..., 2].mean()) < 1.2).all(axis=1)
+    level = inside[:, None] & (abs(ways[..., 2]) < 1e-12)
+    upright = inside[:, None] & (np.linalg.norm(ways[..., :2], axis=2) < 1e-12)
+    assert level.any() and upright.any()
+    np.testing.assert_allclose(found[upright], np.linalg.norm(ways, axis=2)[upright], rtol=1e-12)
+    longer = np.hypot(1, weight * np.sqrt(mesh.area) / radius)
+    np.testing.assert_allclose(found[level], longer * np.linalg.norm(ways, axis=2)[level], rtol=1e-12)
+
+
+def test_a_dual_mesh_that_follows_curvature_is_nearer_to_the_surface():
+    vertices, triangles = meshes.icosphere(5)
+    mesh = sb.Mesh(vertices * [1.0, 0.25, 0.25], triangles)
+
+    def off(surface: sb.Mesh) -> float:
+        dual = sb.centroidal_voronoi(sb.SaddleVertexGraph(surface), count=150).cells.dual()
+        return sb.hausdorff_distance(mesh, sb.Mesh(dual.vertices, dual.triangles)).distance
+
+    bent = sb.Mesh(mesh.vertices, mesh.triangles, lengths=sb.curvature_metric(mesh))
+    assert off(bent) < 0.6 * off(mesh)
+
+
+@pytest.mark.parametrize("weight", [-0.1, np.nan, np.inf])
+def test_a_weight_that_is_none_is_refused(weight):
+    with pytest.raises(sb.InputError, match="weight: wanted 0 or more, got"):
+        sb.curvature_metric(MESH, weight)
+
+
+def bent_tube(turn: float) -> np.ndarray:
+    """Vertices of a tube whose upper half is bent aside by `turn`, smoothly."""
+    x, y, z = meshes.cylinder(48, 72, radius=0.2, height=2.0)[0].T
+    at = np.linspace(0, 2, 2001)
+    angles = turn * np.clip((at - 0.7) / 0.6, 0, 1)
+    across, up = np.cumsum(np.sin(angles)) / 1000, np.cumsum(np.cos(angles)) / 1000
+    angle = np.interp(z, at, angles)
+    return np.column_stack([np.interp(z, at, across) + x * np.cos(angle), y, np.interp(z, at, up) - x * np.sin(angle)])
+
+
+def test_sites_of_several_poses_suit_each_better_than_those_of_one():
+    triangles = meshes.cylinder(48, 72, radius=0.2, height=2.0)[1]
+    poses = [sb.Mesh(bent_tube(turn), triangles) for turn in (0.0, 0.8, 1.6)]
+    graphs = [sb.SaddleVertexGraph(pose) for pose in poses]
+    together = sb.SaddleVertexGraph(sb.Mesh(np.hstack([pose.vertices for pose in poses]), triangles))
+
+    def worst(graph: sb.SaddleVertexGraph) -> tuple[float, float]:
+        """The largest spread of areas in any pose, and the least share of vertices that stay in their cells."""
+        cvt = sb.centroidal_voronoi(graph, count=120, annealing=100)
+        kept = [sb.geodesic_voronoi(other, cvt.sites) for other in graphs]
+        spread = max(float(cells.areas.std() / cells.areas.mean()) for cells in kept)
+        return spread, min(float((cells.vertex_cell == cvt.cells.vertex_cell).mean()) for cells in kept)
+
+    of_all, of_one = worst(together), worst(graphs[0])
+    assert of_all[0] < of_one[0] and of_all[1] > of_one[1]
+
+
 def test_a_mesh_with_lengths_of_its_own_is_refused():
     metric = sb.Mesh(MESH.vertices, MESH.triangles, lengths=MESH.edge_lengths)
     with pytest.raises(sb.InputError, match="mesh: a field stretches lengths of space, but"):
         sb.anisotropic_metric(metric, FIELD, 2)
+    with pytest.raises(sb.InputError, match="mesh: normals are those of space, but"):
+        sb.curvature_metric(metric)

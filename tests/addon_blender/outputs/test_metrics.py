@@ -7,7 +7,14 @@ import pytest
 from scenes import add_object, attribute, fingerprint, grid, grid_arrays, positions, sphere
 from test_operators_direction_field import vectors
 
+import saddleback as sb
+
 QUICK = {"count": 60, "iterations": 20}
+
+
+def mesh_of(data):
+    data.calc_loop_triangles()
+    return sb.Mesh(positions(data), [tuple(t.vertices) for t in data.loop_triangles])
 
 
 def lengths_of(item, directions):
@@ -64,9 +71,9 @@ def test_without_stretch_the_field_does_not_matter():
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"hold_boundary": True}, "stretched cells cannot be kept on lines"),
-        ({"hold_sharp": True}, "stretched cells cannot be kept on lines"),
-        ({"mirror_x": True}, "stretched cells cannot be kept on lines, nor mirrored"),
+        ({"hold_boundary": True}, "cells that are stretched or follow curvature cannot be kept on lines"),
+        ({"hold_sharp": True}, "cells that are stretched or follow curvature cannot be kept on lines"),
+        ({"mirror_x": True}, "cells that are stretched or follow curvature cannot be kept on lines, nor mirrored"),
         ({}, "its direction field has crosses, along which of two lines shall cells be long"),
     ],
 )
@@ -77,4 +84,41 @@ def test_what_cannot_be_stretched_is_told(options, says):
     before = fingerprint()
     with pytest.raises(RuntimeError, match=says):
         bpy.ops.saddleback.tessellate(stretch=2.0, **options, **QUICK)
+    assert fingerprint() == before
+
+
+def test_cells_that_follow_curvature_are_small_where_it_bends():
+    """A rod with round ends: its cells are long along it, and smaller at the ends than on the rod."""
+    item = sphere(subdivisions=5)
+    places = positions(item.data)
+    item.data.vertices.foreach_set("co", (places * [4.0, 1.0, 1.0] / 4).astype(np.float32).ravel())
+    sizes = []
+    for follow in (0.0, 1.0):
+        assert bpy.ops.saddleback.tessellate(follow_curvature=follow, **QUICK) == {"FINISHED"}
+        cell, x = attribute(item, "saddleback_cell"), positions(item.data)[:, 0]
+        tips = np.unique(cell[abs(x) > 0.85])
+        sizes.append(len(tips))
+    assert sizes[1] > 1.5 * sizes[0]
+    assert item.saddleback.tessellate.follow_curvature == 1.0
+
+
+def test_a_remesh_that_follows_curvature_is_nearer_to_the_surface():
+    item = sphere(subdivisions=5)
+    places = positions(item.data)
+    item.data.vertices.foreach_set("co", (places * [1.0, 0.25, 0.25]).astype(np.float32).ravel())
+    surface, off = mesh_of(item.data), []
+    for follow in (0.0, 1.0):
+        done = bpy.ops.saddleback.tessellate(follow_curvature=follow, make_dual=True, count=150, iterations=30)
+        assert done == {"FINISHED"}
+        dual = next(child for child in item.children if child["saddleback_role"] == "dual").data
+        off.append(sb.hausdorff_distance(surface, mesh_of(dual)).distance)
+    assert off[1] < 0.75 * off[0]
+
+
+def test_stretch_and_curvature_together_are_refused():
+    item = sphere(subdivisions=3)
+    item.saddleback.direction_field.symmetry = "2"
+    before = fingerprint()
+    with pytest.raises(RuntimeError, match="along the field or follow curvature, not both"):
+        bpy.ops.saddleback.tessellate(stretch=2.0, follow_curvature=0.5, **QUICK)
     assert fingerprint() == before
