@@ -62,20 +62,35 @@ std::vector<Index> sites_of_places(const Mesh& mesh, const SurfacePoints& sites)
   return kept;
 }
 
-Mesh mesh_of(const ExactParts& parts, const JobStage& stage) {
-  const FaceRefinement& refinement = parts.refinement();
-  const Mesh& mesh = refinement.mesh();
-  std::vector<double> xyz;
-  const auto add = [&](const Vec3& place) { xyz.insert(xyz.end(), {place.x(), place.y(), place.z()}); };
-  for (const Vec3& place : mesh.positions()) add(place);
-  for (const FaceRefinement::Added& added : refinement.added()) add(position(mesh, added.at[0]));
-  std::vector<Index> triangles;
-  for (const Index part : parts.order()) {
-    const auto& corner = refinement.parts()[part].corner;
-    triangles.insert(triangles.end(), corner.begin(), corner.end());
+/// The parts as faces, in their order.
+class FacesOfParts {
+ public:
+  explicit FacesOfParts(const ExactParts& parts) : vertex_count_(parts.refinement().vertex_count()) {
+    const std::vector<FaceRefinement::Part>& all = parts.refinement().parts();
+    std::vector<Index> face_of(all.size());
+    for (std::size_t face = 0; face < all.size(); ++face) face_of[parts.order()[face]] = static_cast<Index>(face);
+    for (const Index i : parts.order()) {
+      const FaceRefinement::Part& part = all[i];
+      triangles_.push_back(part.corner);
+      areas_.push_back(part.area);
+      for (const Index other : part.beyond) {
+        if (other == k_none) {
+          twins_.push_back(k_none);
+          continue;
+        }
+        const auto& back = all[other].beyond;
+        twins_.push_back(3 * face_of[other] + static_cast<Index>(std::ranges::find(back, i) - back.begin()));
+      }
+    }
   }
-  return {xyz, triangles, stage};
-}
+  FaceTable table() const { return {vertex_count_, triangles_, twins_, areas_}; }
+
+ private:
+  const Index vertex_count_;
+  std::vector<Triangle> triangles_;
+  std::vector<Index> twins_;
+  std::vector<double> areas_;
+};
 
 /// Leads from points and pieces of the parts to those of the faces. Added vertices of the parts come last among the
 /// points.
@@ -89,10 +104,8 @@ class InFaces {
 
   void tell() {
     for (SurfacePoint& point : diagram_.points) point = in_face(part(point.face), point.barycentric);
-    for (const FaceRefinement::Added& added : parts_.refinement().added()) {
-      diagram_.points.push_back(added.at[0]);
-      diagram_.positions.push_back(position(mesh_, added.at[0]));
-    }
+    for (const FaceRefinement::Added& added : parts_.refinement().added()) diagram_.points.push_back(added.at[0]);
+    for (const SurfacePoint& point : diagram_.points) diagram_.positions.push_back(position(mesh_, point));
     diagram_.vertex_cell.resize(mesh_.vertex_count());
     diagram_.vertex_distance.resize(mesh_.vertex_count());
     std::vector<Index> part_cell(mesh_.face_count(), k_none);
@@ -161,8 +174,8 @@ GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job*
   for (const Index site : kept) sources.push_back(sites[site]);
   auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
   const ExactParts parts(*field, kept, tolerances(mesh, sites), stage.part(0.3, 0.8));
-  const Mesh divided = mesh_of(parts, stage.part(0.8, 0.85));
-  const ExactCandidates candidates(parts, divided, static_cast<Index>(sites.size()));
+  const FacesOfParts faces(parts);
+  const ExactCandidates candidates(parts, faces.table(), static_cast<Index>(sites.size()));
   GeodesicVoronoi diagram = subdivision(CellComplex(candidates, 1, stage.part(0.85, 0.95)), sites, stage);
   InFaces(parts, diagram).tell();
   for (const SurfacePoint& point : diagram.points) diagram.point_distance.push_back(field->nearest_at(point).distance);

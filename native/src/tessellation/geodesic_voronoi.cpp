@@ -20,16 +20,16 @@ namespace {
 double double_area(const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)); }
 
 std::vector<double> cell_areas(const CellComplex& complex) {
-  const Mesh& mesh = complex.mesh();
+  const FaceTable& table = complex.table();
   std::vector<double> areas(complex.site_count(), 0);
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    if (complex.face_site(f) != k_none) areas[complex.face_site(f)] += mesh.face_area(f);
+  for (Index f = 0; f < table.face_count(); ++f) {
+    if (complex.face_site(f) != k_none) areas[complex.face_site(f)] += table.areas[f];
   }
   for (const CellComplex::Piece& piece : complex.pieces()) {
     const Vec3* corner = &complex.loop_barycentric()[piece.first];
     double share = 0;
     for (Index i = 1; i + 1 < piece.count; ++i) share += double_area(corner[0], corner[i], corner[i + 1]);
-    areas[piece.site] += share * mesh.face_area(piece.face);
+    areas[piece.site] += share * table.areas[piece.face];
   }
   return areas;
 }
@@ -44,7 +44,7 @@ std::vector<Segment> find_segments(const CellComplex& complex) {
   struct Side {
     Index from, to, site;
   };
-  const Index first_point = complex.mesh().vertex_count();
+  const Index first_point = complex.table().vertex_count;
   std::vector<Segment> segments;
   std::vector<Side> sides;
   const auto& pieces = complex.pieces();
@@ -133,7 +133,7 @@ class Chains {
 
 void copy_candidates(const FaceCandidates& candidates, GeodesicVoronoi& out) {
   out.face_candidates.assign(1, 0);
-  for (Index face = 0; face < candidates.mesh().face_count(); ++face) {
+  for (Index face = 0; face < candidates.table().face_count(); ++face) {
     if (const Index shared = candidates.shared_index(face); shared != k_none) {
       for (const FaceCandidate& candidate : candidates.candidates(shared)) {
         out.candidates.push_back({candidate.site, candidate.squared_distance});
@@ -265,21 +265,24 @@ GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& 
   CellCandidates cells(graph, rings, CellLengths::of_ways, threads, cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
   const CandidatesOfCells candidates(cells);
-  GeodesicVoronoi result = make_diagram(CellComplex(candidates, threads, stage.part(0.7, 0.9)), sites, stage);
+  GeodesicVoronoi result =
+      make_diagram(graph.mesh(), CellComplex(candidates, threads, stage.part(0.7, 0.9)), sites, stage);
   stage.update(1);
   return result;
 }
 
-GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
+GeodesicVoronoi make_diagram(const Mesh& mesh, const CellComplex& complex, const SurfacePoints& sites,
+                             const JobStage& stage) {
   GeodesicVoronoi result = subdivision(complex, sites, stage);
   copy_candidates(complex.candidates(), result);
-  for (const SurfacePoint& point : result.points)
-    result.point_distance.push_back(candidate_at(result, complex.mesh(), point).distance);
+  for (const SurfacePoint& point : result.points) {
+    result.positions.push_back(position(mesh, point));
+    result.point_distance.push_back(candidate_at(result, mesh, point).distance);
+  }
   return result;
 }
 
 GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
-  const Mesh& mesh = complex.mesh();
   GeodesicVoronoi result;
   result.sites = sites;
   result.vertex_cell = complex.vertex_site();
@@ -287,14 +290,12 @@ GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sit
   stage.check();
   result.areas = cell_areas(complex);
   result.points = complex.added();
-  for (const SurfacePoint& point : result.points) result.positions.push_back(position(mesh, point));
-  stage.check();
   const std::vector<Segment> segments = find_segments(complex);
   stage.check();
   const Chains chains(segments, result.points.size(), result);
   stage.check();
-  result.face_cell.resize(mesh.face_count());
-  for (Index f = 0; f < mesh.face_count(); ++f) result.face_cell[f] = complex.face_site(f);
+  result.face_cell.resize(complex.table().face_count());
+  for (Index f = 0; f < complex.table().face_count(); ++f) result.face_cell[f] = complex.face_site(f);
   for (const CellComplex::Piece& piece : complex.pieces()) {
     result.pieces.push_back({piece.face, piece.site, piece.first, piece.count});
   }

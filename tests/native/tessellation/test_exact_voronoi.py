@@ -71,6 +71,19 @@ def test_more_sites_than_triangles(arrays: meshes.Arrays) -> None:
         assert lag(mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-5
 
 
+@pytest.mark.parametrize("height", [1e-9, 1e-11, 3e-12])
+def test_hyperbolas_across_slivers(height: float) -> None:
+    """An L whose bisector, a hyperbola behind the corner, crosses a face that is nearly as low as meshes may have."""
+    outline = [(0, 0, 0), (1, 0, 0), (1, -1, 0), (-1, -1, 0), (-1, 1, 0), (0, 1, 0)]
+    triangles = [(0, 3, 2), (0, 2, 1), (0, 4, 3), (0, 6, 4), (0, 5, 6), (6, 5, 4)]
+    mesh = sb.Mesh([*outline, (height - 0.5, height + 0.5, 0)], triangles)
+    cells = exact_cells(mesh, sites_at(mesh, [(0.9, -0.05, 0), (-0.9, -0.6, 0)]))
+    check(mesh, cells)
+    np.testing.assert_array_equal(cells.edge_points, cells.edge_surface.positions(mesh))
+    for by_area in (True, False):
+        assert lag(mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-5
+
+
 def sees(place: np.ndarray, others: np.ndarray, low: float, high: float) -> np.ndarray:
     """Whether straight lines pass beside the open square from low to high."""
     step = others - place

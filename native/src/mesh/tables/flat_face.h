@@ -23,6 +23,12 @@ struct FlatFace {
   FlatFace(const Vec3& a, const Vec3& b, const Vec3& c);
   explicit FlatFace(const std::array<Vec3, 3>& corners) : FlatFace(corners[0], corners[1], corners[2]) {}
   Vec3 to_barycentric(const Vec2& xy) const;
+  /// Returns what leads from one place to another, by how much their barycentric coordinates differ: of a needle's
+  /// short side, too, to a few roundings of it.
+  Vec2 vector(const Vec3& change) const {
+    if (last.squaredNorm() < corner[2].squaredNorm()) return change[2] * last - change[0] * corner[1];
+    return change[1] * corner[1] + change[2] * corner[2];
+  }
 };
 
 /// Barycentric coordinates with rounding removed, exactly at a corner or on an edge when within k_snap of it.

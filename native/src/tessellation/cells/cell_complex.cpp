@@ -14,7 +14,7 @@ void reverse(std::vector<EdgeLine>& lines) {
 }  // namespace
 
 CellComplex::CellComplex(const FaceCandidates& candidates, int threads, const JobStage& stage)
-    : candidates_(candidates), mesh_(candidates.mesh()) {
+    : candidates_(candidates) {
   break_edges();
   stage.update(0.3);
   divide_faces(threads, stage.part(0.3, 0.9));
@@ -24,12 +24,12 @@ CellComplex::CellComplex(const FaceCandidates& candidates, int threads, const Jo
 
 /// The half-edge along which an edge's breaks are stored.
 Index CellComplex::edge_halfedge(Index h) const {
-  const Index twin = mesh_.twin(h);
+  const Index twin = table().twins[h];
   return twin == k_none ? h : std::min(h, twin);
 }
 
 void CellComplex::break_edges() {
-  edge_index_.assign(mesh_.halfedge_count(), k_none);
+  edge_index_.assign(table().halfedge_count(), k_none);
   std::vector<EdgeLine> lines;
   for (Index shared = 0; shared < candidates_.shared_count(); ++shared) {
     const Index face = candidates_.face(shared);
@@ -41,7 +41,7 @@ void CellComplex::break_edges() {
       candidates_.lines_along(shared, h, lines);
       if (h != along) reverse(lines);
       lower_envelope(lines, edge.pieces);
-      edge.first_vertex = mesh_.vertex_count() + static_cast<Index>(added_.size());
+      edge.first_vertex = table().vertex_count + static_cast<Index>(added_.size());
       for (std::size_t i = 1; i < edge.pieces.size(); ++i) {
         SurfacePoint point{Mesh::face_of(along), Vec3::Zero()};
         point.barycentric[along % 3] = 1 - edge.pieces[i].begin;
@@ -104,7 +104,7 @@ void CellComplex::add_pieces(Index face, const FacePartition& partition) {
   std::vector<Index> number(vertices.size(), k_none);
   std::vector<Vec3> place(vertices.size());
   for (int corner = 0; corner < 3; ++corner) {
-    number[corner] = mesh_.triangles()[face][corner];
+    number[corner] = table().triangles[face][corner];
     place[corner] = Vec3::Unit(corner);
   }
   std::vector<Index> sites, breaks;
@@ -126,7 +126,7 @@ void CellComplex::add_pieces(Index face, const FacePartition& partition) {
     pieces_.push_back({face, piece.site, static_cast<Index>(loop_.size()), static_cast<Index>(piece.loop.size())});
     for (const Index v : piece.loop) {
       if (number[v] == k_none) {
-        number[v] = mesh_.vertex_count() + static_cast<Index>(added_.size());
+        number[v] = table().vertex_count + static_cast<Index>(added_.size());
         place[v] = vertices[v].barycentric;
         added_.push_back({face, place[v]});
       }
@@ -137,9 +137,9 @@ void CellComplex::add_pieces(Index face, const FacePartition& partition) {
 }
 
 void CellComplex::label_vertices() {
-  vertex_site_.resize(mesh_.vertex_count());
-  vertex_distance_.resize(mesh_.vertex_count());
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+  vertex_site_.resize(table().vertex_count);
+  vertex_distance_.resize(table().vertex_count);
+  for (Index v = 0; v < table().vertex_count; ++v) {
     vertex_site_[v] = candidates_.label(v);
     vertex_distance_[v] = candidates_.distance(v);
   }

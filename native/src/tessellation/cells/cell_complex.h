@@ -1,5 +1,5 @@
 #pragma once
-// The cells of sites as a subdivision of the mesh's faces.
+// The cells of sites as a subdivision of faces.
 
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace saddleback {
 /// edges are computed once an edge, so that the pieces of neighboring faces fit to the bit.
 class CellComplex {
  public:
-  /// Vertices 0..V-1 are the mesh's; then come breaks on edges, then inner points of faces.
+  /// Vertices 0..V-1 are the faces'; then come breaks on edges, then inner points of faces.
   struct Piece {
     Index face, site;
     Index first, count;  ///< in `loop` and `loop_barycentric`
@@ -21,7 +21,7 @@ class CellComplex {
   /// The candidates must outlive the complex. \throw Cancelled.
   CellComplex(const FaceCandidates& candidates, int threads, const JobStage& stage);
 
-  const Mesh& mesh() const { return mesh_; }
+  const FaceTable& table() const { return candidates_.table(); }
   const FaceCandidates& candidates() const { return candidates_; }
   Index site_count() const { return candidates_.site_count(); }
   /// The cell of a face that one cell owns whole, else k_none.
@@ -30,7 +30,7 @@ class CellComplex {
   const std::vector<Piece>& pieces() const { return pieces_; }
   const std::vector<Index>& loop() const { return loop_; }
   const std::vector<Vec3>& loop_barycentric() const { return loop_barycentric_; }
-  /// Vertices that the mesh does not have; vertex V + i is added()[i].
+  /// Vertices that the faces do not have; vertex V + i is added()[i].
   const SurfacePoints& added() const { return added_; }
   const std::vector<Index>& vertex_site() const { return vertex_site_; }
   const std::vector<double>& vertex_distance() const { return vertex_distance_; }  ///< from vertex_site
@@ -51,7 +51,6 @@ class CellComplex {
   Index edge_halfedge(Index h) const;
 
   const FaceCandidates& candidates_;
-  const Mesh& mesh_;
   std::vector<Index> edge_index_;  ///< per half-edge, into edges_
   std::vector<EdgeBreaks> edges_;
   std::vector<Index> loop_, vertex_site_;

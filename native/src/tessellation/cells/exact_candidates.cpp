@@ -107,8 +107,7 @@ ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites,
         stage.update(0.3 + 0.7 * (looks <= faces ? looks / faces / 2 : 1 - faces / looks / 2));
       const bool is_done = is_right(refinement_.parts()[part]);
       looked_[part] = clock_;
-      if (is_done || refinement_.parts().size() >= most || !refinement_.can_halve(static_cast<Index>(part))) continue;
-      divide(static_cast<Index>(part));
+      if (!is_done && refinement_.parts().size() < most) divide(static_cast<Index>(part));
     }
   }
   order_.resize(refinement_.parts().size());
@@ -368,11 +367,11 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<
   return true;
 }
 
-ExactCandidates::ExactCandidates(const ExactParts& parts, const Mesh& mesh, Index site_count)
-    : FaceCandidates(mesh, site_count), parts_(parts) {
+ExactCandidates::ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count)
+    : FaceCandidates(faces, site_count), parts_(parts) {
   std::vector<Index> first{0};
   std::vector<FaceCandidate> all, candidates;
-  for (Index face = 0; face < mesh.face_count(); ++face) {
+  for (Index face = 0; face < faces.face_count(); ++face) {
     const FaceRefinement::Part& part = parts.refinement().parts()[parts.order()[face]];
     parts.find_candidates(part, candidates);
     for (FaceCandidate& candidate : candidates) {
@@ -383,14 +382,14 @@ ExactCandidates::ExactCandidates(const ExactParts& parts, const Mesh& mesh, Inde
   }
   const auto count = [&](Index face) { return first[face + 1] - first[face]; };
   // A face that does not know of a site that its neighbor sees on their edge must be divided there all the same.
-  std::vector<std::uint8_t> is_shared(mesh.face_count(), 0);
+  std::vector<std::uint8_t> is_shared(faces.face_count(), 0);
   std::vector<EdgeLine> lines;
   std::vector<EdgePiece> pieces;
-  for (Index face = 0; face < mesh.face_count(); ++face) {
+  for (Index face = 0; face < faces.face_count(); ++face) {
     if (count(face) == 1) continue;
     is_shared[face] = 1;
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-      const Index twin = mesh.twin(h);
+      const Index twin = faces.twins[h];
       if (twin == k_none || count(Mesh::face_of(twin)) > 1) continue;
       lines.clear();
       for (Index i = first[face]; i < first[face + 1]; ++i) lines.push_back(all[i].line_along(h));
@@ -398,7 +397,7 @@ ExactCandidates::ExactCandidates(const ExactParts& parts, const Mesh& mesh, Inde
       if (pieces.size() > 1) is_shared[Mesh::face_of(twin)] = 1;
     }
   }
-  for (Index face = 0; face < mesh.face_count(); ++face) {
+  for (Index face = 0; face < faces.face_count(); ++face) {
     if (!is_shared[face]) continue;
     shared_index_[face] = shared_count();
     faces_.push_back(face);

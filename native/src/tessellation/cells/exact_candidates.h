@@ -75,11 +75,11 @@ class ExactParts {
   std::vector<Index> order_;
 };
 
-/// Gives the same as candidates on a mesh whose faces are the parts, in their order.
+/// Gives the same as candidates of faces that are the parts, in their order.
 class ExactCandidates final : public FaceCandidates {
  public:
   /// Both must outlive the candidates.
-  ExactCandidates(const ExactParts& parts, const Mesh& mesh, Index site_count);
+  ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count);
   Index label(Index vertex) const override { return parts_.nearest(vertex).source; }
   double distance(Index vertex) const override { return parts_.nearest(vertex).distance; }
 

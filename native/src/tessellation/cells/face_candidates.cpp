@@ -10,7 +10,7 @@ void FaceCandidates::lines_along(Index shared, Index halfedge, std::vector<EdgeL
 }
 
 CandidatesOfCells::CandidatesOfCells(const CellCandidates& cells)
-    : FaceCandidates(cells.maps().graph().mesh(), cells.labels().site_count()),
+    : FaceCandidates(FaceTable::of(cells.maps().graph().mesh()), cells.labels().site_count()),
       cells_(cells),
       graph_(cells.maps().graph()) {
   for (Index shared = 0; shared < cells.rows().shared_count(); ++shared)

@@ -9,6 +9,7 @@
 
 #include "tessellation/bisectors/edge_envelope.h"
 #include "tessellation/cells/cell_candidates.h"
+#include "tessellation/cells/face_table.h"
 
 namespace saddleback {
 
@@ -25,11 +26,11 @@ struct FaceCandidate {
 /// The candidates on every face that several sites may share; the other faces belong to one cell.
 class FaceCandidates {
  public:
-  FaceCandidates(const Mesh& mesh, Index site_count)
-      : mesh_(mesh), site_count_(site_count), shared_index_(mesh.face_count(), k_none), first_{0} {}
+  FaceCandidates(const FaceTable& faces, Index site_count)
+      : table_(faces), site_count_(site_count), shared_index_(faces.face_count(), k_none), first_{0} {}
   virtual ~FaceCandidates() = default;
 
-  const Mesh& mesh() const { return mesh_; }
+  const FaceTable& table() const { return table_; }
   Index site_count() const { return site_count_; }
   /// The site nearest to a vertex (ties: the smaller) and its distance. A face whose corners' labels differ is shared.
   virtual Index label(Index vertex) const = 0;
@@ -49,14 +50,14 @@ class FaceCandidates {
   Index shared_index(Index face) const { return shared_index_[face]; }
   /// The cell that owns a face whole, k_none for shared ones.
   Index face_site(Index face) const {
-    return shared_index_[face] == k_none ? label(mesh().triangles()[face][0]) : k_none;
+    return shared_index_[face] == k_none ? label(table_.triangles[face][0]) : k_none;
   }
 
   /// The candidates' squared distances along a half-edge of a shared face, by site.
   void lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const;
 
  protected:
-  const Mesh& mesh_;
+  const FaceTable table_;
   const Index site_count_;
   std::vector<Index> shared_index_, faces_, first_;
   std::vector<FaceCandidate> candidates_;

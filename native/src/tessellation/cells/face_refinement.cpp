@@ -1,11 +1,9 @@
 #include "tessellation/cells/face_refinement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
-#include <utility>
 
-#include "mesh/tables/face_shape.h"
+#include "mesh/tables/flat_face.h"
 
 namespace saddleback {
 
@@ -36,19 +34,6 @@ int FaceRefinement::longest_edge(const Part& part) const {
 int FaceRefinement::edge_towards(Index part, Index other) const {
   const auto& beyond = parts_[part].beyond;
   return static_cast<int>(std::find(beyond.begin(), beyond.end(), other) - beyond.begin());
-}
-
-bool FaceRefinement::can_halve(Index part) const {
-  constexpr double k_least_height = 16 * k_degenerate_height;
-  for (Index before = k_none; part != k_none;) {
-    const Part& here = parts_[part];
-    const double longest = std::ranges::max(here.length);
-    if (2 * here.area <= k_least_height * longest * longest) return false;
-    const Index next = here.beyond[longest_edge(here)];
-    if (next == before) break;
-    before = std::exchange(part, next);
-  }
-  return true;
 }
 
 void FaceRefinement::halve(Index part, std::vector<Index>& changed) {
@@ -88,8 +73,8 @@ Index FaceRefinement::cut(Index index, int edge, Index middle) {
   const int a = edge, b = (edge + 1) % 3, c = (edge + 2) % 3;
   const auto second = static_cast<Index>(parts_.size());
   const double half = whole.length[a] / 2, right = whole.length[b], left = whole.length[c];
-  const double across = std::sqrt(std::max(0.0, (right * right + left * left) / 2 - half * half));
   const Vec3 place = 0.5 * (whole.place[a] + whole.place[b]);
+  const double across = FlatFace(mesh_->corners(3 * whole.face)).vector(whole.place[c] - place).norm();
   parts_[index] = {whole.face,
                    {whole.corner[a], middle, whole.corner[c]},
                    {whole.place[a], place, whole.place[c]},

@@ -11,7 +11,8 @@ namespace saddleback {
 
 /// A mesh whose faces are divided into triangles that fit along every edge. A part is halved across its longest edge,
 /// parts beyond it as far as they must be for that [rivara1984], so that no part is much thinner than the face that it
-/// comes from.
+/// comes from. Lengths are told by places in the face, which halving does not round: of thin faces, however often they
+/// were halved, as well as of others.
 class FaceRefinement {
  public:
   struct Part {
@@ -36,8 +37,6 @@ class FaceRefinement {
   };
   const std::vector<Added>& added() const { return added_; }
 
-  /// False where a part that would be halved, too, is so thin that its halves might have no area.
-  bool can_halve(Index part) const;
   /// Halves a part and appends every part that changed, new ones too, to `changed`.
   void halve(Index part, std::vector<Index>& changed);
 

@@ -6,11 +6,13 @@
 
 namespace saddleback {
 
-/// The cells of a complex of these sites, their boundaries and areas, without what `locate` asks. \throw Cancelled.
+/// The cells of a complex of these sites, their boundaries and areas, without what `locate` asks and without positions.
+/// \throw Cancelled.
 GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
 
-/// The public diagram of a cell complex of these sites. \throw Cancelled.
-GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
+/// The public diagram of a cell complex of these sites, on the mesh's faces. \throw Cancelled.
+GeodesicVoronoi make_diagram(const Mesh& mesh, const CellComplex& complex, const SurfacePoints& sites,
+                             const JobStage& stage);
 
 /// geodesic_voronoi as a part of other work; the sites are checked. \throw Cancelled, DeviceError.
 GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, int cuda_device,
