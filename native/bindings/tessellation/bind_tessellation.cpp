@@ -311,7 +311,8 @@ job : Job, optional
 Returns
 -------
 SurfacePoints
-    One point. Where there are several such points, the one that the given point nearest to the mean in space leads to.
+    One point. Where there are several such points, the one that the given point nearest to the mean in space leads to;
+    on a mesh with lengths of its own, the first given one.
 
 Raises
 ------

@@ -2367,7 +2367,8 @@ def geodesic_center(
     Returns
     -------
     SurfacePoints
-        One point. Where there are several such points, the one that the given point nearest to the mean in space leads to.
+        One point. Where there are several such points, the one that the given point nearest to the mean in space leads to;
+        on a mesh with lengths of its own, the first given one.
 
     Raises
     ------

@@ -54,9 +54,7 @@ std::vector<Index> strip_of(const SurfaceCurve& curve) {
   const std::size_t count = points.size(), pieces = curve.closed() ? count : count - 1;
   std::vector<Index> faces;
   for (std::size_t i = 0; i < pieces; ++i) {
-    const SurfacePoint &a = points[i], &b = points[(i + 1) % count];
-    const Index face = shared_face(mesh, a, b);
-    faces.push_back(face != k_none ? face : shared_face(mesh, a, b, k_barycentric_tolerance));
+    faces.push_back(shared_face(mesh, points[i], points[(i + 1) % count], k_barycentric_tolerance));
   }
   std::vector<Index> entered;
   if (!curve.closed()) append_between(mesh, points.front(), points.front().face, faces.front(), entered);

@@ -52,6 +52,8 @@ std::optional<Vec3> barycentric_in(const Mesh& mesh, const SurfacePoint& point, 
 }
 
 Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double tolerance) {
+  if (tolerance > 0)  // a tolerated face would move a point that lies beside an edge onto it
+    if (const Index face = shared_face(mesh, a, b, 0); face != k_none) return face;
   if (barycentric_in(mesh, b, a.face, tolerance)) return a.face;
   if (barycentric_in(mesh, a, b.face, tolerance)) return b.face;
   Index found = k_none;
@@ -87,18 +89,13 @@ SurfaceCurve::SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed, 
 
 void SurfaceCurve::add_segment(std::size_t from, std::size_t to, const char* argument) {
   const SurfacePoint &a = points_[from], &b = points_[to];
-  double tolerance = 0;
-  Index face = shared_face(*mesh_, a, b, tolerance);
-  if (face == k_none) {
-    tolerance = k_barycentric_tolerance;
-    face = shared_face(*mesh_, a, b, tolerance);
-  }
+  const Index face = shared_face(*mesh_, a, b, k_barycentric_tolerance);
   if (face == k_none) {
     throw InputError(message(argument, ": points ", from, " (face ", a.face, ") and ", to, " (face ", b.face,
                              ") share no face; a curve crosses an edge or vertex at a point of its own"));
   }
-  CurveSegment segment{face, *barycentric_in(*mesh_, a, face, tolerance), *barycentric_in(*mesh_, b, face, tolerance),
-                       length_, 0};
+  CurveSegment segment{face, *barycentric_in(*mesh_, a, face, k_barycentric_tolerance),
+                       *barycentric_in(*mesh_, b, face, k_barycentric_tolerance), length_, 0};
   // By what the coordinates differ: places far from the origin are rounded, and one place would be two.
   const Vec3 change = segment.end - segment.begin;
   const std::array<Vec3, 3> corner = mesh_->corners(3 * face);

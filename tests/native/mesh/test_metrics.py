@@ -140,3 +140,16 @@ def test_a_curve_between_points_of_one_place_in_space_is_drawn():
     assert abs(curve.length - graph.distance(0, 20) - graph.distance(20, 41)) < 1e-9
     with pytest.raises(sb.InputError, match="smooth needs the shape in space"):
         sb.curve_through(graph, [0, 20, 41], smooth=True)
+
+
+def test_a_line_that_ends_beside_an_edge_is_as_long_as_asked():
+    vertices, triangles = meshes.grid(6, 6, jitter=0.3, seed=1)
+    mesh = sb.Mesh(vertices, triangles, lengths=sides(vertices, triangles))
+    field = sb.direction_field(mesh, 1, strokes=[sb.SurfaceCurve(mesh, mesh.edges[0])])
+    start = sb.SurfacePoints([25], [[0.3, 0.3, 0.4]])
+    line = sb.streamline(mesh, field, start, 0.5).surface
+    crossings = np.flatnonzero(np.diff(line.faces)) + 1
+    assert len(crossings) >= 4
+    for crossing in crossings:
+        length = sb.SurfaceCurve(mesh, line[:crossing]).length + 1e-8
+        assert abs(sb.streamline(mesh, field, start, length).length - length) <= 1e-12

@@ -48,7 +48,8 @@ class SurfaceCurve {
 /// does not. Coordinates up to `tolerance` count as zero.
 std::optional<Vec3> barycentric_in(const Mesh& mesh, const SurfacePoint& point, Index face, double tolerance = 0);
 
-/// A face that both points lie on, k_none when there is none. Of several the first point's own, then the second's.
+/// A face that both points lie on, k_none when there is none. Of several the first point's own, then the second's;
+/// before those on which they lie only within `tolerance` others.
 Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double tolerance = 0);
 
 /// Length of the straight line between two points of one face; in space also between others, as the bird flies.

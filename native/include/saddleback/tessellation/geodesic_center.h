@@ -9,11 +9,12 @@ namespace saddleback {
 
 /// The center of points of the surface, by logarithmic and exponential maps in turns until a step is shorter than 1e-9
 /// of the points' spread: the sum of the weights times the squared distances has a minimum there, of several the one
-/// that the given point nearest to the mean in space leads to. A point behind a saddle counts in the direction of the
-/// way to it; steps that do not lower the sum are made shorter, a hundred at most, and may end beside the least where
-/// the sum has a crease, through a saddle vertex. After [karcher1977]. \throw InputError for no points, points off the
-/// mesh or in several components, a wrong number of weights, one that is negative or not finite, or all zero;
-/// Cancelled. A few log maps, O(n sqrt(n) log n) each for n vertices within the spread.
+/// that the given point nearest to the mean in space leads to, or where lengths were given the first one. A point
+/// behind a saddle counts in the direction of the way to it; steps that do not lower the sum are made shorter, a
+/// hundred at most, and may end beside the least where the sum has a crease, through a saddle vertex. After
+/// [karcher1977]. \throw InputError for no points, points off the mesh or in several components, a wrong number of
+/// weights, one that is negative or not finite, or all zero; Cancelled. A few log maps, O(n sqrt(n) log n) each for n
+/// vertices within the spread.
 SurfacePoint geodesic_center(const SaddleVertexGraph& graph, const SurfacePoints& points,
                              std::span<const double> weights = {}, Job* job = nullptr);
 
