@@ -11,6 +11,7 @@ from scenes import add_object, positions
 
 from saddleback_blender import compat, nodes
 from saddleback_blender.bridge.inputs.curves_in import polylines_of
+from saddleback_blender.bridge.outputs import following
 from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
 
 CELLS = 60
@@ -435,6 +436,21 @@ def test_where_following_ends_is_told(capfd):
     assert "'Arm': its modifiers repeat faces or make new ones (Both, Fine), so where they" in "".join(
         capfd.readouterr()
     )
+
+
+def test_all_is_read_before_anything_follows(monkeypatch):
+    """Blender would evaluate what follows already, each time that something is read after it."""
+    item, seen = arm(), []
+    item.modifiers.new("Smooth", "SUBSURF").levels = 1
+
+    def read(mesh):
+        seen.append([found.name for found in outputs_of(item) if found.modifiers])
+        return own(mesh)
+
+    own = following.read_vertex_normals
+    monkeypatch.setattr(following, "read_vertex_normals", read)
+    bpy.ops.saddleback.tessellate(count=CELLS, make_cells=True, thickness=0.05, use_modifiers=True)
+    assert seen == [[]]
 
 
 def test_an_artist_s_bevel_stays_seen_and_our_lines_stay_lines():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Looks: one click, one picture; what they leave alone; the artist's own, kept as presets."""
 
+import math
 from pathlib import Path
 
 import bpy
@@ -170,7 +171,7 @@ def test_new_meshes_keep_the_edges_of_a_box(look):
     assert np.count_nonzero(on_corners) == 8
 
 
-def test_each_of_more_parts_than_cells_has_cells_but_no_lattice_is_made_of_them():
+def test_each_of_more_parts_than_cells_has_cells_and_a_frame_of_a_lattice(capfd):
     planks = np.arange(230)[:, None, None] * (0.0, 0.0, 0.1) + [[0, 0, 0], [1, 0, 0], [1, 0.1, 0], [0, 0.1, 0]]
     item = add_object("Planks", planks.reshape(-1, 3).tolist(), np.arange(920).reshape(-1, 4).tolist())
     assert apply("PANELS") == {"FINISHED"}
@@ -179,8 +180,54 @@ def test_each_of_more_parts_than_cells_has_cells_but_no_lattice_is_made_of_them(
     assert (cells >= 0).all() and cells.max() < 430
     assert len(set(cells[:, 0])) == 230
     assert "430 cells, so that each part has one" in jobs.state.line
-    with pytest.raises(RuntimeError, match="150 cells cannot cover the mesh's 230 separate parts"):
-        apply("LAMP")
+    assert apply("LAMP") == {"FINISHED"}
+    shell = find_output(item, "shell").data
+    assert len(set(native.load().connected_parts(read_triangles(shell), len(shell.vertices)))) == 230
+    assert "in 230 pieces, since the mesh is in 230 parts: join those first" in capfd.readouterr().out
+
+
+def test_a_look_is_a_mesh_though_faults_stay_where_no_cells_can_be_joined(monkeypatch, capfd):
+    item, library = sphere(), native.load()
+    own = library.GeodesicVoronoi.dual
+
+    def dual(cells, policy="repair", **options):
+        if policy == "repair":
+            raise library.InputError("sites: no dual mesh after 504 more sites")
+        return own(cells, policy, **options)
+
+    monkeypatch.setattr(library.GeodesicVoronoi, "dual", dual)
+    with pytest.raises(RuntimeError, match="no dual mesh after 504"):
+        bpy.ops.saddleback.tessellate(count=9, make_dual=True)
+    for look in ("REMESH", "QUADS"):
+        assert apply(look) == {"FINISHED"}
+        assert len(find_output(item, "dual").data.polygons) > 1000
+
+
+def test_stones_are_smooth_all_over():
+    item = sphere()
+    apply("PEBBLES")
+    mesh = find_output(item, "cells").data
+    if bpy.app.version < (4, 1):
+        assert mesh.auto_smooth_angle > math.radians(60.0)
+        return
+    angle = edge_angles(mesh)
+    sharp = np.zeros(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_edge_sharp", sharp)
+    assert np.degrees(angle.max()) > 31.0 and not sharp[angle < math.radians(60.0)].any()
+
+
+def edge_angles(mesh):
+    """(e,) between the faces beside an edge, 0 where there is one."""
+    normals = np.empty(3 * len(mesh.polygons), np.float32)
+    mesh.polygons.foreach_get("normal", normals)
+    edges = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", edges)
+    order = np.argsort(edges, kind="stable")
+    first = np.flatnonzero(edges[order][1:] == edges[order][:-1])
+    a, b = (normals.reshape(-1, 3)[order[first + i] // 3] for i in range(2))
+    angle = np.zeros(len(mesh.edges))
+    angle[edges[order[first]]] = np.arccos(np.clip(np.einsum("ij,ij->i", a, b), -1.0, 1.0))
+    return angle
 
 
 def test_what_cannot_be_covered_is_told_in_a_sentence():

@@ -303,6 +303,16 @@ def test_domes_are_round_from_the_rim_to_the_middle():
             CellShape(dome=wrong)
 
 
+def test_no_line_is_cut_where_a_round_cell_has_no_plateau():
+    vertices, triangles, cell = squares()
+    plain, bevelled = (
+        build_cell_mesh(vertices, triangles, cell, CellShape(gap=0.1, inset=inset, thickness=0.2, dome=1.0))
+        for inset in (0.0, 0.1)
+    )
+    np.testing.assert_array_equal(plain.vertices, bevelled.vertices)
+    np.testing.assert_array_equal(plain.triangles, bevelled.triangles)
+
+
 def test_domes_of_a_sphere_do_not_cross_and_are_closed():
     cells = sphere_cells()
     made = build(cells, gap=0.05, thickness=0.1, dome=1.0, underside=True)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ribs between cells and the solid made of them."""
 
+from dataclasses import replace
+
 import meshes_of_core as shapes
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 import saddleback as sb
 from saddleback_blender.core import runs
 from saddleback_blender.core.errors import BadInputError
-from saddleback_blender.core.figures import shell_faults_of
+from saddleback_blender.core.figures import shell_faults_of, shell_of
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import LampShell
 from saddleback_blender.core.settings import TessellateSettings
@@ -124,6 +126,24 @@ def test_pieces_are_counted():
     request = TessellateRequest(both, settings)
     shell = runs.tessellate(request, runs.new_progress()).shell
     assert shell.pieces == 2 and "2 pieces" in shell_faults_of(shell)[0]
+
+
+def test_cells_around_a_leg_get_others_beside_them_so_that_no_ring_is_loose():
+    vertices, triangles = synthetic_cells.sphere(4)
+    leg = Surface("Leg", vertices * (0.1, 0.1, 3.0), triangles, len(vertices))
+    settings = TessellateSettings(count=12, iterations=10, k=30, make_shell=True)
+    shell = runs.tessellate(TessellateRequest(leg, settings), runs.new_progress()).shell
+    assert shell.pieces == 1 and shell.added > 0 and not shell_faults_of(shell)
+    assert f"{shell.added} cells added so that it hangs together" in shell_of(shell, str, str)
+    sites = np.linspace(0, len(vertices) - 1, 12).astype(np.int32)
+    kept = runs.tessellate(replace(TessellateRequest(leg, settings), sites=sites), runs.new_progress()).shell
+    assert kept.added == 0  # what was placed by hand stays
+
+
+def test_walls_without_any_thickness_are_no_length_of_zero():
+    none = np.zeros((3, 3))
+    shell = LampShell(none, np.zeros((0, 3), np.int32), 1, 0.1, np.ones(3, bool), 0, none, np.array([1e-6, 0.1, 0.1]))
+    assert "(next to nothing at the least" in shell_of(shell, "{:.3f} m".format, str)
 
 
 def test_ribs_are_as_wide_as_the_cells_let_them_be():

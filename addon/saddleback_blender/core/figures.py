@@ -10,6 +10,7 @@ from .results import CellMesh, Dual, Figures, LampShell, SurfacePolygons
 
 # Faults told one by one; of more only the number.
 MOST_TOLD = 3
+LEAST_TOLD = 0.01  # of a shell's thickness: units would say 0 of thinner places
 
 
 def lines_of(figures: Figures | None) -> list[str]:
@@ -32,16 +33,19 @@ def faults_of(dual: Dual) -> list[str]:
     told = "; ".join(dual.issues[:MOST_TOLD])
     rest = len(dual.issues) - MOST_TOLD
     more = f"; and {rest} more" if rest > 0 else ""
-    return [f"The dual mesh has faults where cells are too large ({told}{more}): ask for more cells, or choose Repair"]
+    how = "ask for more cells, choose Repair, or mend the mesh there"
+    return [f"The dual mesh has faults where cells are too large ({told}{more}): {how}"]
 
 
 def shell_of(shell: LampShell, length: Callable[[float], str], volume: Callable[[float], str]) -> str:
     """Says how thick a lamp shell is and how much a printer fills; both numbers as the file's units want them."""
     text = f", walls {length(shell.thickness)} thick"
     if shell.thinner:
-        text += (
-            f" ({length(float(shell.wall.min()))} at the least, {100 * shell.thinner:.2g} % thinned for want of room)"
-        )
+        thinnest = float(shell.wall.min())
+        least = length(thinnest) if thinnest >= LEAST_TOLD * shell.thickness else "next to nothing"
+        text += f" ({least} at the least, {100 * shell.thinner:.2g} % thinned for want of room)"
+    if shell.added:
+        text += f", {shell.added} {'cells' if shell.added > 1 else 'cell'} added so that it hangs together"
     return text + f", volume {volume(shell.volume)}, {len(shell.triangles):,} faces"
 
 
@@ -49,7 +53,9 @@ def shell_faults_of(shell: LampShell) -> list[str]:
     """Sentences about what a printer would stumble over."""
     faults = []
     if shell.pieces > 1:
-        faults.append(f"The lamp shell is in {shell.pieces} pieces: ask for more cells, or separate parts first")
+        told = f"The lamp shell is in {shell.pieces} pieces"
+        several = f"{told}, since the mesh is in {shell.parts} parts: join those first to print one lamp"
+        faults.append(several if shell.parts > 1 else f"{told}: ask for more cells")
     if shell.crossing:
         faults.append(
             f"{shell.crossing} faces of the lamp shell pass through others: make it thinner, or repair the mesh"

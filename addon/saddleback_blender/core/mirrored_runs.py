@@ -247,6 +247,7 @@ def _shell(shell: LampShell, mirror: Mirror) -> LampShell:
         is_thinner=_twice(shell.is_thinner, twice),
         wall=_twice(shell.wall, twice),
         crossing=2 * shell.crossing,
+        added=2 * shell.added,
     )
 
 

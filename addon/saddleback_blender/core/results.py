@@ -86,6 +86,8 @@ class LampShell:
     crossing: int  # triangles that still pass through others; not 0 only where the surface itself does
     feet: Reals  # (n, 3) where on the surface the vertices stand: half-way between one outside and its like inside
     wall: Reals  # (n,) how thick the solid is there, in the middle of the rib
+    parts: int = 1  # of the surface
+    added: int = 0  # cells, without which there would be more pieces
 
     @property
     def thinner(self) -> float:

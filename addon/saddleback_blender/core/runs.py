@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..looks import NO_LOOK
 from . import cache as cache_module
 from . import native
 from .cache import Cache
@@ -28,7 +29,7 @@ from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
 from .solids.crossings import find_crossings
 from .solids.level_lines import LevelLines, isoline_levels, level_lines
-from .solids.rib_surface import RibShape, rib_surface
+from .solids.rib_surface import RibShape, RibSurface, rib_surface
 from .solids.shell_solid import thicken
 from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
@@ -391,7 +392,8 @@ def _dual(
     has_quads = settings.dual_faces == "QUADS"
 
     def build() -> Dual:
-        made = dual_of(solved.cells, policy, request.threads, progress)
+        has_look = settings.look != NO_LOOK  # who asks for a picture gets one
+        made = dual_of(solved.cells, policy, request.threads, progress, has_look)
         if not settings.make_dual:
             return made.dual
         lines = feature_lines(surface, mesh, settings, request.marked_edges) if has_quads else None
@@ -400,6 +402,7 @@ def _dual(
     extra: tuple[object, ...] = (has_quads, *_held(request)) if settings.make_dual else ()
     if settings.make_dual and marks is not None:
         extra = (*extra, marks.edges, marks.sharp, marks.seam, marks.crease)
+    extra = (*extra, settings.look != NO_LOOK)
     return cache.get(("dual", *key, policy, digest(*extra)), build, lambda made: 2 * made.nbytes)
 
 
@@ -415,9 +418,35 @@ def _shell(
     def build() -> LampShell:
         with progress.stage(0.95, "making the ribs of the lamp shell"):
             ribs = rib_surface(request.surface.name, mesh, solved.cells, shape, progress)
-        return thicken(ribs, thickness, find_crossings, progress, is_round)
+            joined = _hanging_together(request, mesh, solved.cells, ribs, shape, progress)
+        shell = thicken(joined.ribs, thickness, find_crossings, progress, is_round)
+        return replace(shell, parts=int(mesh.component_count), added=joined.added)
 
     return cache.get(("shell", *key, digest(*astuple(shape), is_round)), build, lambda shell: shell.nbytes)
+
+
+@dataclass(frozen=True)
+class _JoinedRibs:
+    """Ribs, and how many cells were added for them."""
+
+    ribs: RibSurface
+    added: int = 0
+
+
+def _hanging_together(
+    request: TessellateRequest, mesh: Any, cells: Any, ribs: RibSurface, shape: RibShape, progress: Progress
+) -> _JoinedRibs:
+    """The ribs, or those of more cells where that makes fewer pieces: a cell around a leg, say, leaves loose rings."""
+    pieces = ribs.pieces
+    if request.sites is not None or pieces <= mesh.component_count:
+        return _JoinedRibs(ribs)
+    try:
+        dual = cells.dual("repair", threads=request.threads)
+    except native.load().InputError:
+        return _JoinedRibs(ribs)
+    progress.check()
+    more = rib_surface(request.surface.name, mesh, dual.cells, shape, progress)
+    return _JoinedRibs(more, int(dual.added)) if more.pieces < pieces else _JoinedRibs(ribs)
 
 
 def _edge_distance(surface: Surface, split: Any) -> Reals:

@@ -79,7 +79,7 @@ def read_request(
     if settings.sites_source == "SIZE":
         settings = replace(settings, sites_source="COUNT", count=count_of_size(surface, settings.cell_size))
     sites = read_sites(context, source, mesh, settings)
-    if sites is None and not settings.make_shell:  # a lattice in pieces is of no use
+    if sites is None:
         settings = replace(settings, count=count_for_parts(surface, settings.count))
     has_mesh = settings.make_cells and not settings.makes_polygons
     marks = read_marks(mesh) if settings.hold_marked or settings.make_dual else None

@@ -79,6 +79,8 @@ class Follower:
         self, item: bpy.types.Object, place: Matrix, anchors: Anchors, rotations: Reals | None = None
     ) -> None:
         """Does the same where it is known where the points stand."""
+        # All that is read, before anything is written: Blender would evaluate what was made so far each time.
+        rest, _ = self._rest, self._normals
         extent = float(np.ptp(self._surface.vertices, axis=0).max())
         is_shifted = bool(np.abs(anchors.offset).max(initial=0.0) > ON_SURFACE * extent)
         vectors = {SHIFT_ATTRIBUTE: anchors.offset} if is_shifted else {}
@@ -90,7 +92,7 @@ class Follower:
         keeper = _new_keeper(self._source, item, len(anchors.corners)) if item.type == "CURVE" else None
         self._write(item.data if keeper is None else keeper.data, anchors, vectors)
         known = Known(is_shifted, rotations is not None, keeper)
-        set_following(item, Host.of(self._source, place, self._surface.vertex_count, self._rest.otherwise), known)
+        set_following(item, Host.of(self._source, place, self._surface.vertex_count, rest.otherwise), known)
 
     def _write(self, mesh: bpy.types.Mesh, anchors: Anchors, vectors: dict[str, Reals]) -> None:
         """Gives a mesh's vertices what the node group asks for: where they stand, and vectors as seen from there."""

@@ -31,6 +31,8 @@ CELL_ATTRIBUTE = "saddleback_cell"
 LOCAL_UV = "saddleback_local"
 # A plateau's edge is steeper than this, and a mesh fine enough for cells bends less from face to face.
 CREASE_ANGLE = math.radians(30.0)
+# A dome has no edge but where it meets its underside; its small triangles bend more than it does.
+DOME_ANGLE = math.radians(75.0)
 
 
 def write_cells(
@@ -49,8 +51,10 @@ def write_cells(
     look = settings.look if isinstance(settings, TessellateSettings) else NO_LOOK
     colors = _colors(result, settings, result.edge_cells)
     place = level_place(source)
-    is_smooth = compat.is_shaded_smooth(source.data) or (isinstance(settings, TessellateSettings) and settings.dome > 0)
-    mesh = _mesh(to_place(place, cells.vertices), cells, colors, is_smooth)
+    dome = settings.dome if isinstance(settings, TessellateSettings) else 0.0
+    is_smooth = dome > 0.0 or compat.is_shaded_smooth(source.data)
+    crease = (DOME_ANGLE if dome == 1.0 else CREASE_ANGLE) if is_smooth else None
+    mesh = _mesh(to_place(place, cells.vertices), cells, colors, crease)
     if isinstance(settings, TessellateSettings) and settings.local_uv:
         places = local_uv(
             cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal
@@ -138,15 +142,15 @@ def _colors(result: CellsResult, settings: TessellateSettings | Voronoi2dSetting
     return colors if twin is None else colors[twin]
 
 
-def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:
+def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, crease: float | None) -> bpy.types.Mesh:
     mesh = _new_mesh(positions)
     compat.write_corners(mesh, cells.triangles)
     compat.write_edges(mesh, *triangle_edges(cells.triangles, len(positions)))  # sooner than Blender finds them
     mesh.update()
     set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.triangle_cell)
     _write_colors(mesh, colors, np.repeat(cells.triangle_cell, 3))
-    if is_smooth:
-        compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
+    if crease is not None:
+        compat.shade_smooth_by_angle(mesh, crease)
     else:
         compat.shade_flat(mesh)
     return mesh

@@ -33,6 +33,7 @@ class Slim(NamedTuple):
 ROUND, THIN = Slim(1.0 / 6.0, 0.5), Slim(0.05, 0.3)
 SHRINK = 0.85  # a shape that the surface bends too much for is drawn smaller by this, once, twice, ...
 CLEARER = 0.9  # one that passes through others by this
+GENTLY = 3  # so often; from then on by its square, its cube, ..., since next to nothing is left of most of them
 LEAST = 0.1  # of their size: smaller ones that still pass through others are left out
 
 
@@ -150,9 +151,11 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
         reach, np.repeat(owner, 3), np.linalg.norm(points[triangles.ravel()] - middle[np.repeat(owner, 3)], axis=1)
     )
     pairs = _pairs(points, triangles, owner, None, job)
+    times = np.zeros(len(factor))
     while len(pairs):
         chosen = _fewest(pairs, factor)
-        factor[chosen] *= CLEARER
+        times[chosen] += 1
+        factor[chosen] *= CLEARER ** np.maximum(times[chosen] - GENTLY + 1, 1)
         pairs = pairs[~np.isin(pairs, chosen).any(axis=1)]
         is_kept = ~np.isin(owner, chosen)
         triangles, owner = triangles[is_kept], owner[is_kept]

@@ -21,15 +21,16 @@ from .cell_solid import Raised, raise_surface
 from .crossings import find_crossings, is_deep
 from .directions import Neighbors
 from .level_cut import Cut, cut_at_level, open_chords, split_edges
-from .room import Solid, beside, fit, has_any
+from .room import Solid, beside, fit, has_any, surface_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Lengths = float | Floats  # one, or one for each cell
 
 POSITION, DIRECTION, DISTANCE, WITHIN = slice(0, 3), slice(3, 6), 6, 7
-# Of the way from a cell's rim to its middle: where a dome has lines of vertices, close together where it is steep.
-DOME_LINES = (0.04, 0.13, 0.27, 0.45, 0.68)
+# Of the way from a cell's rim to its middle: where a dome has lines of vertices, so that it turns by as much from each
+# to the next, and is off by 2 % of its height at most.
+DOME_LINES = tuple(1.0 - math.cos(math.radians(turn)) for turn in (22.5, 45.0, 67.5))
 DOME_STEP = 0.6  # as long as edges are at most, of half a cell's size
 DOME_SMOOTHING = 8  # rounds, which take the ridges from where two sides of a cell are equally near
 # A level line is off by this share of its distance from the boundary at most.
@@ -72,6 +73,11 @@ class CellShape:
         return self.dome > 0.0 and self.thickness > 0.0
 
     @property
+    def has_plateau(self) -> bool:
+        """Tells whether a rim ends where something flat begins."""
+        return self.inset > 0.0 and not (self.is_round and self.dome == 1.0)
+
+    @property
     def rim_start(self) -> Lengths:
         """Distance from the cell boundary at which the cell begins, of each cell where they differ."""
         return _times(0.5 * self.gap, self.gap_by)
@@ -99,7 +105,7 @@ class CellShape:
     @property
     def levels(self) -> list[float]:
         """The distances from the cell boundary at which the mesh is cut; of many, those that are far apart."""
-        found = np.unique([*np.ravel(self.rim_start), *np.ravel(self.rim_end)])
+        found = np.unique([*np.ravel(self.rim_start), *(np.ravel(self.rim_end) if self.has_plateau else ())])
         found = found[found > LEAST_LEVEL * found[-1]]
         if len(found) > MANY_LEVELS:
             step = np.log1p(LEVEL_TOLERANCE)
@@ -238,7 +244,7 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
     thickness but no inset the sides are upright walls.
     """
     fields, triangles, cells = pieces.fields, pieces.triangles, pieces.cells
-    if shape.inset > 0.0 and len(triangles):
+    if shape.has_plateau and len(triangles):
         ends = shape.rim_end if isinstance(shape.rim_width, float) else np.where(shape.rim_width > 0, shape.rim_end, 0)
         inner = _cut_at_distance(fields, triangles, cells, ends, -1.0)
         fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
@@ -272,7 +278,7 @@ def _with_room(raised: Raised, owner: Ints, progress: Progress) -> tuple[Floats,
     which still cross. Of what crosses by rounding alone nothing is told, though it is lowered, too.
     """
     solid = Solid(raised.triangles, raised.place, len(raised.base), raised.at, THINNER, LEAST_SHARE, PATIENCE)
-    surface, deep = raised.place[raised.triangles], np.empty((0, 2), np.int32)
+    surface, deep = surface_of(solid), np.empty((0, 2), np.int32)
     has_no_room = np.zeros(solid.count, np.bool_)
 
     def find(vertices: Floats, triangles: Ints, among: Ints, job: object) -> Ints:
@@ -303,7 +309,7 @@ def _way_to_middle(distance: Floats, triangles: Ints, cells: Ints, shape: CellSh
 
 def _dome_share(within: Floats, triangles: Ints, progress: Progress) -> Floats:
     """The height (V,) of a half ellipsoid as a part of the thickness, its ridges smoothed; the rim stays. O(m)."""
-    neighbors = Neighbors(triangles, len(within), progress)
+    neighbors = Neighbors(triangles, len(within))
     share = within * (2.0 - within)
     for _ in range(DOME_SMOOTHING):
         progress.check()

@@ -25,11 +25,16 @@ def find_crossings(vertices: Reals, triangles: Indices, among: Indices | None = 
 
 def is_deep(vertices: Reals, triangles: Indices, pairs: Indices) -> NDArray[np.bool_]:
     """Tells which pairs (k, 2) that `find_crossings` found pass through each other by more than rounding explains: each
-    triangle reaches farther beyond the other's plane than coordinates may be off. Needles turn over when rounded.
+    triangle reaches farther beyond the other's plane than coordinates may be off, and before they are rounded, too.
+    Needles turn over when rounded, and the planes of two needles tell nothing.
     """
     first, second = (vertices[triangles[side]].astype(np.float32).astype(np.float64) for side in pairs.T)
     off = ROUNDING * np.abs(vertices).max(initial=0.0)
     deep: NDArray[np.bool_] = np.minimum(_depth(first, second), _depth(second, first)) > off
+    chosen, places = np.unique(pairs[deep], return_inverse=True)
+    rows = places.reshape(-1, 2)  # ascending, as all pairs
+    found = native.load().self_crossings(np.ascontiguousarray(vertices), triangles[chosen]).astype(np.int64)
+    deep[deep] = np.isin(rows[:, 0] * len(chosen) + rows[:, 1], found[:, 0] * len(chosen) + found[:, 1])
     return deep
 
 

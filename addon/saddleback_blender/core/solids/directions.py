@@ -28,7 +28,7 @@ def smooth_directions(
     progress.check()
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
     progress.check()
-    neighbors = Neighbors(triangles, len(vertices), progress)
+    neighbors = Neighbors(triangles, len(vertices))
     smooth = normals
     for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, most))):
         progress.check()
@@ -45,27 +45,22 @@ def smooth_directions(
 
 
 class Neighbors:
-    """Corners of the triangles around each vertex but itself, sorted by vertex: one on two triangles counts twice."""
+    """Corners of the triangles around each vertex but itself: one on two triangles counts twice."""
 
-    def __init__(self, triangles: Indices, count: int, progress: Progress) -> None:
-        start, end = directed_edges(triangles)
-        progress.check()
-        both, other = np.concatenate([start, end]), np.concatenate([end, start])
-        order = np.argsort(both, kind="stable")
-        progress.check()
-        self.other = other[order]
-        times = np.bincount(both, minlength=count)
-        self.used = np.flatnonzero(times)
-        self.times = times[self.used]
-        self.first = (np.cumsum(times) - times)[self.used]
+    def __init__(self, triangles: Indices, count: int) -> None:
+        self.start, self.end = (ends.astype(np.intp) for ends in directed_edges(triangles))  # as numpy counts
         self.count = count
+        self.times = np.maximum(np.bincount(self.start, minlength=count) + np.bincount(self.end, minlength=count), 1)
 
     def mean(self, values: Reals) -> Reals:
-        """Mean (n, k) of the neighbors' values; zero where there are none."""
-        means = np.zeros((self.count, values.shape[1]))
-        for axis in range(values.shape[1]):
-            means[self.used, axis] = np.add.reduceat(values[:, axis][self.other], self.first) / self.times
-        return means
+        """Mean (n, k) of the neighbors' values; zero where there are none. O(t)."""
+        return np.column_stack([self._mean(np.ascontiguousarray(column)) for column in values.T])
+
+    def _mean(self, values: Reals) -> Reals:
+        ways = ((self.start, self.end), (self.end, self.start))
+        sums = (np.bincount(to, values.take(of), minlength=self.count) for to, of in ways)
+        mean: Reals = sum(sums) / self.times
+        return mean
 
 
 def _unit(vectors: Reals, otherwise: Reals) -> Reals:

@@ -57,6 +57,12 @@ class RibSurface:
     direction: Reals
     across: Reals
 
+    @property
+    def pieces(self) -> int:
+        """The number of pieces that hang together."""
+        found = native.load().connected_parts(self.triangles[self.is_rib], len(self.vertices))
+        return int(found.max(initial=-1)) + 1
+
 
 def rib_surface(name: str, mesh: Any, cells: Any, shape: RibShape, progress: Progress) -> RibSurface:
     """The ribs of the library's cells on its mesh; a border of the mesh has a rib, too.

@@ -56,7 +56,7 @@ def fit(solid: Solid, find_crossings: FindCrossings, end: float, text: str, prog
     Each round looks for what passes through triangles that the one before has moved; all together they move no more
     than MOST_MOVES times as many triangles as there are. The run is at `end` after the last.
     """
-    triangles, surface = solid.triangles, solid.place[solid.triangles]
+    triangles, surface = solid.triangles, surface_of(solid)
     share, there = np.ones(solid.count), np.ones(solid.count, bool)
     least, least_at, moves, begin = len(triangles) + 1, 0, 0, progress.fraction
     for number in range(MOST_TIMES + 1):
@@ -72,13 +72,18 @@ def fit(solid: Solid, find_crossings: FindCrossings, end: float, text: str, prog
         if not len(crossing) or is_enough:
             break
         progress.check()
-        there = beside(surface, np.unique(surface[crossing]), solid.count)
-        if solid.mend is None and (share[there] <= solid.least).all():
+        if solid.mend is None and not has_any(share > solid.least, surface[crossing]).any():
             break
+        there = beside(surface, np.unique(surface[crossing]), solid.count)
         share[there] = np.maximum(solid.thinner * share[there], solid.least)
         if solid.mend is not None:
             solid.mend(number, there)
     return Fitted(vertices, share, crossing)
+
+
+def surface_of(solid: Solid) -> Indices:
+    """The places (m, 3) of the triangles' corners, column by column, as they are looked at."""
+    return np.asfortranarray(solid.place[solid.triangles])
 
 
 def beside(triangles: Indices, vertices: NDArray[np.integer], count: int) -> NDArray[np.bool_]:
@@ -91,5 +96,5 @@ def beside(triangles: Indices, vertices: NDArray[np.integer], count: int) -> NDA
 
 def has_any(chosen: NDArray[np.bool_], triangles: Indices) -> NDArray[np.bool_]:
     """Tells which triangles (t, 3) have a chosen corner; numpy's `any` along short rows takes ten times as long."""
-    a, b, c = (chosen[triangles[:, side]] for side in range(3))
+    a, b, c = (chosen.take(triangles[:, side]) for side in range(3))
     return a | b | c

@@ -86,7 +86,7 @@ def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[
     used, number = np.unique(triangles[around[triangles].all(axis=1)], return_inverse=True)
     near: Indices = number.reshape(-1, 3).astype(np.int32)
     own, moved = there[used], places[used]
-    moved[own] = Neighbors(near, len(used), progress).mean(moved)[own]
+    moved[own] = Neighbors(near, len(used)).mean(moved)[own]
     places[used] = moved
     direction[used[own]] = smooth_directions(moved, near, 0.0, progress)[own]
 

@@ -24,13 +24,20 @@ class MadeDual:
     dual: Dual
 
 
-def dual_of(cells: Any, policy: str, threads: int, progress: Progress) -> MadeDual:
+def dual_of(cells: Any, policy: str, threads: int, progress: Progress, has_faults: bool = False) -> MadeDual:
     """The library's dual mesh of its cells, by REPAIR or STRICT, without triangles that no mesh can hold.
 
-    Raises the library's InputError where the cells cannot be repaired, and its Cancelled.
+    Where cells cannot be repaired, one that `has_faults`, if that is allowed; else raises the library's InputError. Its
+    Cancelled, too.
     """
-    with progress.stage(0.99, "joining the sites") as job:
-        mesh = cells.dual(policy=policy.lower(), threads=threads, job=job)
+    try:
+        with progress.stage(0.99, "joining the sites") as job:
+            mesh = cells.dual(policy=policy.lower(), threads=threads, job=job)
+    except native.load().InputError:
+        if not has_faults:
+            raise
+        with progress.stage(0.99, "joining the sites") as job:
+            mesh = cells.dual(policy="strict", threads=threads, job=job)
     dual = Dual(
         vertices=mesh.vertices,
         triangles=_simple(mesh.triangles),
