@@ -29,6 +29,11 @@ def volume(vertices: Floats, triangles: NDArray[np.int32]) -> float:
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
+def normals(vertices: Floats, triangles: NDArray[np.int32]) -> Floats:
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    return np.asarray(np.cross(b - a, c - a))
+
+
 def junk(rng: Random) -> Arrays:
     """Indices without sense, in and out of range; coordinates on a small lattice, or strange."""
     count, faces = int(rng.integers(3, 9)), int(rng.integers(1, 12))
@@ -75,6 +80,28 @@ def bodies_face_outward(rng: Random) -> None:
     mesh, _ = sb.repair(vertices, triangles[order])
     found = volume(mesh.vertices, mesh.triangles)
     assert abs(found - wanted) <= 1e-9 * abs(wanted), f"{found} for {wanted}"
+
+
+@guards("repair", on="nothing")
+def open_bodies_face_outward(rng: Random) -> None:
+    """Bodies of which a side is missing, all other faces turned at random: they face as they did."""
+    make = [lambda: meshes.icosphere(2), lambda: meshes.torus(24, 12, 2.0, 0.8)][int(rng.integers(2))]
+    parts: list[Arrays] = []
+    for i in range(int(rng.integers(1, 4))):
+        vertices, triangles = make()
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        height = vertices[triangles].mean(axis=1) @ turn[0]
+        kept = height < np.quantile(height, rng.uniform(0.7, 0.99))
+        parts.append((vertices @ (turn * np.sign(np.linalg.det(turn))) + [6.0 * i, 0, 0], triangles[kept]))
+    vertices, triangles = meshes.merge(*parts)
+    mixed = triangles.copy()
+    turned = rng.random(len(mixed)) < rng.random()
+    mixed[turned] = mixed[turned, ::-1]
+    mesh, report = sb.repair(vertices * 10.0 ** rng.integers(-6, 7), mixed)
+    wanted, found = normals(vertices, triangles), normals(mesh.vertices, mesh.triangles[report.face_map])
+    body = mesh.components[mesh.triangles[report.face_map, 0]]
+    is_crumb = (np.bincount(body) < 20)[body]  # of the ragged border, which shows as much of both sides
+    assert (is_crumb | (np.einsum("ij,ij->i", wanted, found) > 0)).all()
 
 
 def two_halves(rng: Random) -> tuple[Arrays, Arrays]:

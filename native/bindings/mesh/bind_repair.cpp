@@ -27,9 +27,10 @@ constexpr const char* k_repair_doc = R"(Make a valid mesh of nearly anything.
 
 Drops what cannot be used (indices out of range, vertices that are not finite, faces that repeat a vertex or another
 face, vertices of no face), welds vertices, splits non-manifold edges and vertices, orients the faces (the outermost
-outward where closed, and what lies within with it; a surface without orientation, such as a Moebius strip, is cut along
-a seam) and mends faces without area so that no crack opens. Borders that nearly meet are told in the report. A good mesh
-whose vertices are all in different places comes back as it was.
+outward where closed, and what lies within with it; open ones so that not decidedly more of the back than of the front is
+seen from outside; a surface without orientation, such as a Moebius strip, is cut along a seam) and mends faces without
+area so that no crack opens. Borders that nearly meet are told in the report. A good mesh whose vertices are all in
+different places comes back as it was.
 
 Parameters
 ----------

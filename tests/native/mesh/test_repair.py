@@ -235,6 +235,45 @@ def test_solids_within_a_solid_stay_as_they_are():
     assert sb.repair(*whole)[1].changes == {}
 
 
+def bowl(lowest=-0.2, radius=1.0):
+    """A ball without what lies above a height."""
+    vertices, triangles = meshes.icosphere(3, radius=radius)
+    return vertices, triangles[(vertices[triangles, 2] < lowest * radius).all(axis=1)]
+
+
+@pytest.mark.parametrize("whole", [bowl(), bowl(0.9), moved(bowl(), (3, 1, 2))])
+def test_open_bodies_show_their_front(whole):
+    mesh, report = sb.repair(*turned(whole))
+    assert set(report.changes) == {"faces_flipped", "vertices_unreferenced"}
+    assert report.changes["faces_flipped"] == len(whole[1])
+    again, second = sb.repair(mesh.vertices, mesh.triangles)
+    assert second.changes == {} and np.array_equal(again.triangles, mesh.triangles)
+    kept, report = sb.repair(*whole)
+    assert set(report.changes) == {"vertices_unreferenced"}
+    normals = [sb.vertex_normals(found.vertices, found.triangles) for found in (mesh, kept)]
+    assert normals[0] == pytest.approx(normals[1], abs=1e-12)
+
+
+def test_each_open_body_is_turned_by_what_is_seen_of_it_among_all():
+    """The inner wall of a thick bowl faces the hollow, in which nobody sees its other side."""
+    outer, inner = bowl(0.5), bowl(0.5, 0.9)
+    inner = turned(inner)
+    for wrong in (turned(outer), outer):
+        for hidden in (turned(inner), inner):
+            mesh, _ = sb.repair(*meshes.merge(wrong, hidden))
+            middles = mesh.vertices[mesh.triangles].mean(axis=1)
+            corners = mesh.vertices[mesh.triangles]
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            faces_out = np.einsum("ij,ij->i", normals, middles) > 0
+            assert np.array_equal(faces_out, np.linalg.norm(middles, axis=1) > 0.95)
+
+
+@pytest.mark.parametrize("sheet", [meshes.grid(5, 5), bowl(-0.95)])
+def test_sheets_of_which_both_sides_are_seen_stay_as_they_came(sheet):
+    for arrays in (sheet, turned(sheet)):
+        assert "faces_flipped" not in sb.repair(*arrays)[1].changes
+
+
 def test_a_ball_in_the_hole_of_a_torus_is_not_within_it():
     ring, ball = meshes.torus(24, 8, 5.0, 0.5), meshes.icosphere(1)
     mesh, _ = sb.repair(*meshes.merge(ring, turned(moved(ball, (0, 0, 0.1)))))

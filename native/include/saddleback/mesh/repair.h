@@ -53,8 +53,9 @@ inline constexpr Index k_most_hole_edges = 2000;  ///< some seconds, and 50 MB
 
 /// Drops what cannot be used (bad indices, non-finite vertices, repeated and duplicate faces, unreferenced vertices),
 /// welds vertices at the same place or within `weld_distance`, splits non-manifold edges and vertices, orients the
-/// faces (the outermost outward where closed, with what lies within; a surface without orientation is cut along a seam)
-/// and mends faces without area by collapsing their zero edge or flipping their long one. Borders that nearly meet are
+/// faces (the outermost outward where closed, with what lies within, and where open so that decidedly more of the front
+/// is seen from outside than of the back; a surface without orientation is cut along a seam) and mends faces without
+/// area by collapsing their zero edge or flipping their long one. Borders that nearly meet are
 /// told, or stitched; holes are filled where asked for. A good mesh without coincident vertices comes back as it was.
 /// \throw MeshError when no face is left. \throw InputError for a negative or non-finite weld distance, a number of
 /// edges out of range, coordinates or indices not in threes. O(n log n), and O(h^3) for a hole of h edges. The cutting

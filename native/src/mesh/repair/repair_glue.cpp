@@ -113,6 +113,7 @@ class Gluer {
     }
     turn_minorities(labels, patch_count_);
     turn_outward(state_, sheets_, labels, patch_count_, stage);
+    turn_seen_outward(state_, sheets_, labels, patch_count_, stage);
     state_.count("faces_flipped", static_cast<Index>(std::count(sheets_.turned.begin(), sheets_.turned.end(), 1)));
   }
 

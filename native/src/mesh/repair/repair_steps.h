@@ -55,6 +55,10 @@ Sheets glue_sheets(RepairState& state, const JobStage& stage);
 void turn_outward(const RepairState& state, Sheets& sheets, const std::vector<Index>& labels, Index label_count,
                   const JobStage& stage);
 
+/// Turns open bodies so that the side of which more is seen from outside is their front; see repair_seen.cpp.
+void turn_seen_outward(const RepairState& state, Sheets& sheets, const std::vector<Index>& labels, Index label_count,
+                       const JobStage& stage);
+
 /// Gives every fan of glued corners a vertex of its own, writes the faces back, turned as they should be, and divides
 /// edges that two vertices share more than once (`divide` false: drops their faces). Afterwards the state is manifold.
 /// The returned vector says for each vertex of before which vertex stands for it now, k_none if none does.
