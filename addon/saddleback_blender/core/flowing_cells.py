@@ -44,6 +44,7 @@ class FlowingCells:
         self._frame = ("", "")
         self._sites: Any = None
         self._kept: tuple[tuple[str, str], Reals] | None = None
+        self._cells: Any = None  # from one run to the next: a dab changes those about it
 
     def begin_at(self, frame: tuple[str, str], places: Reals) -> None:
         """Notes where cells are that another run made, of a frame: places (n, 3)."""
@@ -96,13 +97,14 @@ class FlowingCells:
     ) -> Relaxed:
         """Evens out the cells of this frame by a density, in calls that are longer and longer: each is shown."""
         sb = native.load()
-        cells, done, steps = sb.CellCache(), 0, 1
+        self._cells = self._cells or sb.CellCache()
+        done, steps = 0, 1
         while True:
             end = 0.5 + 0.4 * min(1.0, (done + steps) / settings.iterations)
             with progress.stage(end, "evening out the cells") as job:
                 cvt = sb.centroidal_voronoi(
                     graph, sites=self._sites, density=density, method=settings.method.lower(), max_iterations=steps,
-                    least_move=UNSEEN, cache=cells, threads=threads, job=job,
+                    least_move=UNSEEN, cache=self._cells, threads=threads, job=job,
                 )  # fmt: skip
             self.keep(frame, cvt.cells)
             done += int(cvt.iterations)

@@ -6,11 +6,15 @@ numbers.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .solids.level_lines import LevelLines
+
+if TYPE_CHECKING:
+    from .solids.edge_network import EdgeNetwork
 
 Reals = NDArray[np.float64]
 Indices = NDArray[np.int32]
@@ -155,6 +159,7 @@ class CellsResult:
     exchanged: int = 0  # cells that were moved to where the dual mesh needs them
     twin: Indices | None = None  # (n,) where it was mirrored: the cell of the one side that each is the mirror of
     frame: tuple[str, str] = ("", "")  # names the surface, and all else that decided on the cells but the density
+    network: EdgeNetwork | None = None  # the edges joined, where an object of them will be written
 
     @property
     def count(self) -> int:

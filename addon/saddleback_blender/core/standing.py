@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from . import cache
 from .graphs import mesh_of_surface
@@ -23,8 +24,9 @@ def with_anchors(
     ground = Ground(surface, mesh_of_surface(surface, progress, cache.shared))
     points: list[tuple[Reals, Reals | None]] = []
     if settings.make_edges and settings.edge_kind == "MESH":
-        lines = edge_network(result.edge_points, result.edge_offsets, result.edge_cells, result.edge_closed)
-        points.append((lines.vertices, None))
+        network = edge_network(result.edge_points, result.edge_offsets, result.edge_cells, result.edge_closed)
+        points.append((network.vertices, None))
+        result = replace(result, network=network)
     if result.mesh is not None:
         points.append((result.mesh.vertices, result.mesh.feet))
     if result.polygons is not None:

@@ -226,10 +226,11 @@ sites (`closed_ball`) the iterations begin again.)")
   py::class_<GraphCells>(m, "CellCache", py::module_local(),
                          R"(Keeps the cells that a relaxation ended with, for the next one on the same graph.
 
-Pass it as ``cache=`` to `centroidal_voronoi`. Called again with the same graph and density, that finds anew only cells whose
-sites, or whose neighbors' sites, are elsewhere: move, add or remove a few of the result's sites (the others in the same
-order) and only their surroundings are computed. With ``least_move`` above 0 this goes for every iteration. Other cells stay
-the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
+Pass it as ``cache=`` to `centroidal_voronoi`. Called again with the same graph, that finds anew only cells whose sites, or
+whose neighbors' sites, are elsewhere: move, add or remove a few of the result's sites (the others in the same order) and
+only their surroundings are computed. With another density, all masses and centers are found anew, and no cells. With
+``least_move`` above 0 this goes for every iteration. Other cells stay the same to the bit. About 1 KB a vertex, and the
+graph, are kept.)")
       .def(py::init<>())
       .def(
           "clear",

@@ -308,9 +308,10 @@ def repair(
 
     Drops what cannot be used (indices out of range, vertices that are not finite, faces that repeat a vertex or another
     face, vertices of no face), welds vertices, splits non-manifold edges and vertices, orients the faces (the outermost
-    outward where closed, and what lies within with it; a surface without orientation, such as a Moebius strip, is cut along
-    a seam) and mends faces without area so that no crack opens. Borders that nearly meet are told in the report. A good mesh
-    whose vertices are all in different places comes back as it was.
+    outward where closed, and what lies within with it; open ones so that not decidedly more of the back than of the front is
+    seen from outside; a surface without orientation, such as a Moebius strip, is cut along a seam) and mends faces without
+    area so that no crack opens. Borders that nearly meet are told in the report. A good mesh whose vertices are all in
+    different places comes back as it was.
 
     Parameters
     ----------
@@ -2593,10 +2594,11 @@ class RelaxationWatch:
 class CellCache:
     """Keeps the cells that a relaxation ended with, for the next one on the same graph.
 
-    Pass it as ``cache=`` to `centroidal_voronoi`. Called again with the same graph and density, that finds anew only cells whose
-    sites, or whose neighbors' sites, are elsewhere: move, add or remove a few of the result's sites (the others in the same
-    order) and only their surroundings are computed. With ``least_move`` above 0 this goes for every iteration. Other cells stay
-    the same to the bit. About 1 KB a vertex, and the graph, are kept.
+    Pass it as ``cache=`` to `centroidal_voronoi`. Called again with the same graph, that finds anew only cells whose sites, or
+    whose neighbors' sites, are elsewhere: move, add or remove a few of the result's sites (the others in the same order) and
+    only their surroundings are computed. With another density, all masses and centers are found anew, and no cells. With
+    ``least_move`` above 0 this goes for every iteration. Other cells stay the same to the bit. About 1 KB a vertex, and the
+    graph, are kept.
     """
     def __init__(self) -> None: ...
     def clear(self) -> None:

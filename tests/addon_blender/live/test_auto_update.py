@@ -13,7 +13,8 @@ import pytest
 from scenes import attribute, fingerprint, grid, positions, sphere
 
 from saddleback_blender import jobs
-from saddleback_blender.bridge.outputs import live_preview
+from saddleback_blender.bridge.outputs import live_preview, out_edges
+from saddleback_blender.bridge.outputs.out_collection import find_output
 from saddleback_blender.core import cache
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.ops import live, tessellate
@@ -74,6 +75,27 @@ def cells(item):
 
 def threads():
     return [thread for thread in threading.enumerate() if thread.name.startswith("saddleback") and thread.is_alive()]
+
+
+def test_lines_are_joined_by_the_thread_and_not_again_where_the_window_waits(item, monkeypatch):
+    def joined(*_):
+        raise AssertionError("joined while the window waits")
+
+    monkeypatch.setattr(out_edges, "edge_network", joined)
+    paint(item)
+    steps()
+    assert find_output(item, "edges").data.vertices
+
+
+def test_cells_of_one_dab_begin_with_those_of_the_last(item):
+    paint(item)
+    steps()
+    (watched,) = live.live.watched.values()
+    known = watched.cells._cells
+    assert known is not None
+    paint(item, (0.0, 1.0, 0.0))
+    steps()
+    assert watched.cells._cells is known
 
 
 def test_cells_follow_the_brush_where_it_was(item):

@@ -123,6 +123,25 @@ def test_the_same_for_any_number_of_threads() -> None:
     assert found[0] == found[1] == found[2]
 
 
+def test_another_density_finds_masses_and_centers_anew_and_no_cells() -> None:
+    mesh = sb.Mesh(*meshes.torus(72, 30))
+    graph, cache = sb.SaddleVertexGraph(mesh, k=40), sb.CellCache()
+    first = sb.centroidal_voronoi(graph, count=200, max_iterations=10, cache=cache)
+    dab = 1.0 + 8.0 * (np.linalg.norm(mesh.vertices - mesh.vertices[7], axis=1) < 1.0)
+    for density in (dab, None, 1.0 + mesh.vertices[:, 2] ** 2):
+        sites = first.sites
+        still = sb.centroidal_voronoi(graph, sites=sites, density=density, max_iterations=0, cache=cache)
+        assert np.array_equal(still.cells.areas, first.cells.areas)
+        for steps in (0, 1, 4):
+            options = {"sites": sites, "density": density, "max_iterations": steps, "least_move": 1e-3}
+            cached = sb.centroidal_voronoi(graph, cache=cache, **options)
+            alone = sb.centroidal_voronoi(graph, **options)
+            check_as_found_anew(graph, cached)
+            np.testing.assert_allclose(cached.energy, alone.energy, rtol=1e-9)
+            places = cached.sites.positions(mesh), alone.sites.positions(mesh)
+            np.testing.assert_allclose(*places, atol=1e-6)
+
+
 def test_another_graph_or_density_begins_anew() -> None:
     cache = sb.CellCache()
     for size in (30, 24):

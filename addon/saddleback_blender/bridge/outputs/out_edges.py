@@ -31,7 +31,9 @@ def write_edges(
     follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's edges object; the radius is in world units whatever the source's scale."""
-    network = edge_network(result.edge_points, result.edge_offsets, result.edge_cells, result.edge_closed)
+    network = result.network or edge_network(
+        result.edge_points, result.edge_offsets, result.edge_cells, result.edge_closed
+    )
     return write_network(context, source, network, settings, role, follower)
 
 

@@ -5,10 +5,10 @@
 
 namespace saddleback {
 
-/// Keeps the cells that a relaxation ended with. The next one on the same graph with the same density finds anew only
-/// those whose sites, or whose neighbors' sites, are elsewhere: of 5,000 sites one that is moved, added or removed
-/// costs its surroundings. The sites that stay must be in the same order as before. What is kept is about as much
-/// memory as a relaxation takes: 1 KB a vertex.
+/// Keeps the cells that a relaxation ended with. The next one on the same graph finds anew only those whose sites, or
+/// whose neighbors' sites, are elsewhere: of 5,000 sites one that is moved, added or removed costs its surroundings.
+/// With another density cells stay, too, but for their masses and centers. The sites that stay must be in the same
+/// order as before. What is kept is about as much memory as a relaxation takes: 1 KB a vertex.
 ///
 /// The graph must outlive what is kept of it. Two calls at a time may have the same cache: one of them begins with
 /// nothing.

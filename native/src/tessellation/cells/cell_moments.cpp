@@ -376,6 +376,8 @@ void CellIntegrals::add_about(const Node& about, const SiteVector& seen, CellMom
 
 std::vector<CellMoments> CellIntegrals::moments(const CellCandidates& candidates, std::vector<CellMoments> before,
                                                 const JobStage& stage) {
+  const bool has_none = before.empty();
+  const auto keeps = [&](Index site) { return !has_none && candidates.is_as_before(site); };
   std::vector<CellMoments> cells = std::move(before);
   cells.resize(candidates.labels().site_count());
   parallel_for(candidates.labels().site_count(), threads_, 16, [&](Index i, int) {
@@ -383,7 +385,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellCandidates& candidates
     const Index site = candidates.labels().sites_along_curve()[i];
     if (i + 1 < candidates.labels().site_count())
       fetch_cell(candidates, candidates.labels().sites_along_curve()[i + 1]);
-    if (!candidates.is_as_before(site)) cells[site] = within(candidates, site);
+    if (!keeps(site)) cells[site] = within(candidates, site);
   });
   // By stretches of faces that are always the same: sums depend neither on the number of threads nor on other cells.
   constexpr Index k_stretch = 4096;
@@ -401,8 +403,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellCandidates& candidates
     const auto integrate = [&](Index first, Index last) {
       for (Index shared = first; shared < last; ++shared) {
         const auto rivals = candidates.rows().candidates(shared);
-        if (std::ranges::all_of(
-                rivals, [&](const CellCandidate& candidate) { return candidates.is_as_before(candidate.site); }))
+        if (std::ranges::all_of(rivals, [&](const CellCandidate& candidate) { return keeps(candidate.site); }))
           continue;
         const Index face = candidates.rows().face(shared);
         const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
@@ -415,7 +416,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellCandidates& candidates
       if (candidates.rows().shared_index(face) != k_none) continue;
       const Index site = candidates.labels().label(rings_.face(face).nodes[0]);
       CellMoments part;
-      if (!candidates.is_as_before(site) && add_at_border(candidates, face, part)) stretch_sums.add(site, part);
+      if (!keeps(site) && add_at_border(candidates, face, part)) stretch_sums.add(site, part);
     }
     const CandidateRows::Stretch shared = candidates.rows().within(first, last);
     integrate(shared.first, shared.last);
@@ -424,7 +425,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellCandidates& candidates
   });
   for (const auto& entries : sums) {
     for (const auto& [site, part] : entries)
-      if (!candidates.is_as_before(site)) cells[site] += part;
+      if (!keeps(site)) cells[site] += part;
   }
   return cells;
 }

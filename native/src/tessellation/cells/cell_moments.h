@@ -24,8 +24,8 @@ class CellIntegrals {
   CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& rings, std::span<const double> density, int threads);
 
   /// Moments by cell. Integrals of density^2 times squared distance (both quadratic in a flat face) are exact. The same
-  /// for any number of threads. `before`: those of the candidates before their last `find`; cells that are as before
-  /// keep theirs. \throw Cancelled. O(V + pieces), of the other cells.
+  /// for any number of threads. `before`: those of the candidates before their last `find`, or none; cells that are
+  /// as before keep theirs. \throw Cancelled. O(V + pieces), of the other cells.
   std::vector<CellMoments> moments(const CellCandidates& candidates, std::vector<CellMoments> before,
                                    const JobStage& stage);
 

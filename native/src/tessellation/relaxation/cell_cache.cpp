@@ -54,13 +54,18 @@ KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> d
       threads_(thread_count(threads)),
       cuda_device_(cuda_device),
       rings_(graph, threads),
-      integrals_(graph, rings_, density_, threads),
+      integrals_(std::in_place, graph, rings_, density_, threads),
       candidates_(graph, rings_, lengths, threads, cuda_device) {}
 
-bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
-                      int cuda_device) const {
-  return &graph == &graph_ && thread_count(threads) == threads_ && cuda_device == cuda_device_ &&
-         std::ranges::equal(density, density_);
+bool KnownCells::fits(const SaddleVertexGraph& graph, int threads, int cuda_device) const {
+  return &graph == &graph_ && thread_count(threads) == threads_ && cuda_device == cuda_device_;
+}
+
+void KnownCells::change_density(std::span<const double> density) {
+  if (std::ranges::equal(density, density_)) return;
+  density_.assign(density.begin(), density.end());
+  integrals_.emplace(graph_, rings_, density_, threads_);
+  moments_.clear();
 }
 
 void KnownCells::match(const SurfacePoints& sites) {
@@ -70,6 +75,7 @@ void KnownCells::match(const SurfacePoints& sites) {
   if (2 * std::ranges::count(numbers, k_none) > std::ssize(numbers))
     candidates_.forget();  // others may be far away now
   candidates_.renumber(numbers);
+  if (moments_.empty()) return;
   std::vector<CellMoments> moments(sites.size());
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (numbers[i] != k_none) moments[i] = moments_[numbers[i]];
@@ -79,7 +85,7 @@ void KnownCells::match(const SurfacePoints& sites) {
 const std::vector<CellMoments>& KnownCells::find(const SurfacePoints& sites, const JobStage& stage) {
   if (!std::exchange(is_whole_, false)) candidates_.forget();
   candidates_.find(sites, stage.part(0, 0.8));
-  moments_ = integrals_.moments(candidates_, std::move(moments_), stage);
+  moments_ = integrals_->moments(candidates_, std::move(moments_), stage);
   is_whole_ = true;
   return moments_;
 }
@@ -87,7 +93,7 @@ const std::vector<CellMoments>& KnownCells::find(const SurfacePoints& sites, con
 void KnownCells::look_farther(const JobStage& stage) {
   is_whole_ = false;
   candidates_.look_farther(stage);
-  moments_ = integrals_.moments(candidates_, std::move(moments_), stage);
+  moments_ = integrals_->moments(candidates_, std::move(moments_), stage);
   is_whole_ = true;
 }
 
@@ -95,7 +101,9 @@ BorrowedCells::BorrowedCells(CellCache* cache, CachedCells which, const SaddleVe
                              std::span<const double> density, int threads, int cuda_device)
     : cache_(cache), which_(which) {
   if (cache) cells_ = cache->content_->exchange(which, nullptr);
-  if (!cells_ || !cells_->fits(graph, density, threads, cuda_device))
+  if (cells_ && cells_->fits(graph, threads, cuda_device))
+    cells_->change_density(density);
+  else
     cells_ = std::make_unique<KnownCells>(graph, density,
                                           which == CachedCells::relaxed ? CellLengths::smooth : CellLengths::of_ways,
                                           threads, cuda_device);

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "saddleback/tessellation/cell_cache.h"
@@ -21,7 +22,9 @@ class KnownCells {
   KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, CellLengths lengths, int threads,
              int cuda_device);
 
-  bool fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device) const;
+  bool fits(const SaddleVertexGraph& graph, int threads, int cuda_device) const;
+  /// With another density cells stay, and all their moments are found anew. O(F).
+  void change_density(std::span<const double> density);
   const CellCandidates& candidates() const { return candidates_; }
   /// False before the first `find` and after one that was cancelled.
   bool is_whole() const { return is_whole_; }
@@ -35,13 +38,13 @@ class KnownCells {
 
  private:
   const SaddleVertexGraph& graph_;
-  const std::vector<double> density_;
+  std::vector<double> density_;
   const int threads_, cuda_device_;
   const VertexRings rings_;
-  CellIntegrals integrals_;
+  std::optional<CellIntegrals> integrals_;  ///< by the density
   CellCandidates candidates_;
-  std::vector<CellMoments> moments_;
-  bool is_whole_ = false;  ///< nothing was cancelled
+  std::vector<CellMoments> moments_;  ///< none where those known are of another density
+  bool is_whole_ = false;             ///< nothing was cancelled
 };
 
 /// Cells that a relaxation looked at last, and those that it showed of its result.
