@@ -57,6 +57,7 @@ def test_random_input_meets_the_truths():
         ("outlines.safe_distances", 892871),  # a strip before the other's first
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them
+        ("baked.texels_of_cells", 30508662),  # rays went round a spike of 6e-9 radians without end, never at its tip
         ("sweeps.ties_of_a_circle", 31001546),  # six arcs vanish in the moment in which a site is touched
         ("sweeps.ties_of_a_circle", 31000843),  # twins an ulp apart, touched in the wrong order
         ("sweeps.ties_of_a_circle", 893636),  # begun in a vertex, whose event was not told

@@ -11,6 +11,7 @@
 
 #include "geodesics/unfolding/common_length.h"
 #include "geodesics/unfolding/tips.h"
+#include "mesh/tables/outgoing.h"
 
 namespace saddleback {
 namespace {
@@ -99,6 +100,14 @@ struct Parallel {
 /// Direction of increasing arc length.
 Vec2 tangent(const RayWindow& window) { return window.side * Vec2(window.source.y(), -window.source.x()); }
 
+/// Tells whether a ray has gone all round a tip within its faces. It crosses an edge to the tip so far from the tip,
+/// with the tip ahead along x, and has its root so many times `ray` back.
+bool circles_near(const WavefrontDistances::Tip& tip, double away, const Vec2& ray, double root) {
+  if (!(away < tip.reach) || !circles(tip.tangent, ray.x(), ray.y())) return false;
+  const double back = away / (ray.y() / tip.tangent - ray.x());  // where it crossed that edge before
+  return back < root && back * ray.y() < tip.reach * tip.sine;
+}
+
 RayWindow vertex_event(Index vertex, double distance) {
   return {Vec2::Zero(), 0, 0, distance, 0, ~vertex, Rays::from_foot, 0, false};
 }
@@ -134,8 +143,13 @@ WavefrontDistances::WavefrontDistances(const Unfolding& unfolding)
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     const double tangent = tangent_of_tip(mesh_, v);
     if (!std::isfinite(tangent)) continue;
-    tip_tangents_.resize(mesh_.vertex_count(), k_infinity);
-    tip_tangents_[v] = tangent;
+    tips_.resize(mesh_.vertex_count());
+    tips_[v] = {tangent, std::sin(mesh_.total_angle(v)), k_infinity};
+    for (const Index h : outgoing(mesh_, v)) {
+      const Index opposite = Mesh::next(h);
+      const Vec2 apex = unfolding_.apex(opposite), nearest(std::clamp(apex.x(), 0.0, mesh_.length(opposite)), 0);
+      tips_[v].reach = std::min(tips_[v].reach, (apex - nearest).norm());
+    }
   }
 }
 
@@ -326,19 +340,24 @@ void WavefrontDistances::emit_from(Index vertex, double begin, double end) {
   } while (h != k_none && h != first);
 }
 
-/// Tells whether the rays have gone all round a tip that they end at: see tips.h. Those of a curve that is at the tip
-/// itself have only begun.
+/// Tells whether the rays have gone all round a tip: see tips.h. Those of a curve that is at the tip itself have only
+/// begun.
 template <class Front>
 bool WavefrontDistances::circles_tip(const RayWindow& w) const {
   const double length = mesh_.length(w.halfedge);
+  const Tip &at_from = tips_[mesh_.from(w.halfedge)], &at_to = tips_[mesh_.to(w.halfedge)];
   const auto comes_from_afar = [&](double b) {
     return !Front::is_parallel || Front::distance(w, b) > k_at_border * length;
   };
-  const Vec2 to_end = Front::ray(w, Vec2(length, 0)), to_start = Front::ray(w, Vec2(0, 0));
-  return (w.b1 == length && circles(tip_tangents_[mesh_.to(w.halfedge)], to_end.x(), to_end.y()) &&
-          comes_from_afar(length)) ||
-         (w.b0 == 0 && circles(tip_tangents_[mesh_.from(w.halfedge)], -to_start.x(), to_start.y()) &&
-          comes_from_afar(0));
+  const Vec2 to_start = Front::ray(w, Vec2(w.b0, 0)), to_end = Front::ray(w, Vec2(w.b1, 0));
+  if (w.b1 == length && circles(at_to.tangent, to_end.x(), to_end.y()) && comes_from_afar(length)) return true;
+  if (w.b0 == 0 && circles(at_from.tangent, -to_start.x(), to_start.y()) && comes_from_afar(0)) return true;
+  const auto root = [&](double b) { return Front::is_parallel ? Front::distance(w, b) : 1; };  // in units of the ray
+  const auto circles_with = [&](const Tip& tip, double from_b0, double from_b1, double towards) {
+    return circles_near(tip, from_b0, {towards * to_start.x(), to_start.y()}, root(w.b0)) &&
+           circles_near(tip, from_b1, {towards * to_end.x(), to_end.y()}, root(w.b1));
+  };
+  return circles_with(at_to, length - w.b0, length - w.b1, 1) || circles_with(at_from, w.b0, w.b1, -1);
 }
 
 /// Barriers take rays that meet them in the face out of a window; places before them see those rays all the same.
@@ -355,7 +374,7 @@ void WavefrontDistances::propagate(const RayWindow& window) {
   if (Front::is_less(at_from + window.b1, window, window.b1) ||
       Front::is_less(at_to + (base - window.b0), window, window.b0))
     return;
-  if (!tip_tangents_.empty() && circles_tip<Front>(window)) return;
+  if (!tips_.empty() && circles_tip<Front>(window)) return;
   const Vec2 ray = Front::ray(window, apex);
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
   if (!places_.empty() && !is_cut_) reach_places<Front>(window);

@@ -64,6 +64,12 @@ class WavefrontDistances {
   PlaceDistances& places() { return places_; }
   const PlaceDistances& places() const { return places_; }
 
+  /// A vertex round which rays may go, or any other one.
+  struct Tip {
+    double tangent = std::numeric_limits<double>::infinity();  ///< see tips.h
+    double sine = 0, reach = 0;  ///< of the total angle; no place nearer is beyond its faces
+  };
+
  private:
   struct VertexState {
     RayLabel label;
@@ -115,7 +121,7 @@ class WavefrontDistances {
   std::vector<double> distances_;  ///< of the vertices' labels, once more: filters need little else
   std::vector<VertexState> vertices_;
   std::vector<Occupant> occupants_;
-  std::vector<double> tip_tangents_;  ///< as ExactSurface has them
+  std::vector<Tip> tips_;  ///< by vertex; empty where there is none
   RayBarriers barriers_;
   BlockQueue<RayWindow> queue_;  ///< a window on half-edge ~v stands for vertex v, its distance being the offset
   std::vector<Index> due_;       ///< vertices of the current bucket
