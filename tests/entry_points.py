@@ -139,6 +139,13 @@ class Inputs:
         return sb.add_barriers(self.mesh, edges=self.mesh.edges[::7], curves=[self.curve])
 
     @functools.cached_property
+    def barred_cells(self) -> sb.GeodesicVoronoi:
+        mesh = self.barred.mesh
+        return sb.geodesic_voronoi(
+            sb.SaddleVertexGraph(mesh, threads=2), sb.sample(mesh, mesh.component_count + 20, one_per_component=True)
+        )
+
+    @functools.cached_property
     def curve_points(self) -> Any:
         return self.curve.points.positions(self.mesh)
 
@@ -242,6 +249,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "GeodesicVoronoi.centers": lambda **more: at.cells.centers(**more),
         "GeodesicVoronoi.dual": lambda **more: at.cells.dual(**more),
         "GeodesicVoronoi.polygons": lambda **more: at.cells.polygons(**more),
+        "CellPolygons.triangles": lambda: at.cells.polygons().triangles(),
         "DualMesh.quads": lambda: at.cells.dual().quads(),
         "GeodesicVoronoi.cells_at": lambda: at.cells.cells_at(at.points),
         "GeodesicVoronoi.locate": lambda: at.cells.locate(at.points),
@@ -279,6 +287,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "find_arcs": lambda **more: sb.find_arcs(at.mesh, 1, 3, **more),
         "BarredMesh.least": lambda: at.barred.least(at.barred.mesh.vertices[:, 0]),
         "BarredMesh.least_copies": lambda: at.barred.least_copies(at.barred.mesh.vertices[:, 0]),
+        "BarredMesh.polygons": lambda: at.barred.polygons(at.barred_cells),
         "BarredMesh.to_barred": lambda: at.barred.to_barred(at.points[:100]),
         "BarredMesh.to_whole": lambda: at.barred.to_whole(np.arange(100, dtype=np.int32)),
         "BarredMesh.values_to_barred": lambda: at.barred.values_to_barred(at.vertices[:, 0]),
@@ -363,6 +372,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "map_shapes": lambda **more: sb.map_shapes(at.mesh, at.star, at.laid.placements, **more),
         "plot": lambda: if_installed(lambda: sb.plot(quality)),
         "polar_coordinates": lambda: sb.polar_coordinates(at.graph, at.curve, 0.5),
+        "super_patches": lambda **more: sb.super_patches(at.mesh, 60, **more),
         "stroke_map": lambda: sb.stroke_map(at.mesh, at.curve, 0.5),
         "principal_curvatures": lambda: sb.principal_curvatures(at.mesh),
         "progress_bar": lambda: contextlib.ExitStack().enter_context(sb.progress_bar(io.StringIO())),

@@ -270,3 +270,141 @@ def quads_by_recount(mesh: sb.Mesh, rng: Random) -> None:
             assert vertices - len(counts) + len(quads) == dual.euler_characteristic - (
                 sites - len(np.unique(quads[:, 2]))
             )
+
+
+@guards("BarredMesh.polygons", "CellPolygons.triangles")
+def polygons_beside_barriers(mesh: sb.Mesh, rng: Random) -> None:
+    """Whatever edges are barriers: each is covered by sides, once from either of its faces; all sides are shared; the
+    parts of the surface that polygons stand for are all of it, and have no open edge but at the border.
+    """
+    if not is_usual(mesh):
+        return
+    edges = mesh.edges[rng.random(mesh.edge_count) < rng.choice([0.05, 0.3])]
+    barred = sb.add_barriers(mesh, edges=edges)
+    count = barred.mesh.component_count + int(rng.integers(0, 12))
+    sites = sb.sample(barred.mesh, count, seed=int(rng.integers(1 << 30)), one_per_component=True)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(barred.mesh, k=min(60, barred.mesh.vertex_count)), sites)
+    polygons, split = barred.polygons(cells)
+    parts = np.unique(split.triangle_cell).tolist()
+    assert sorted([*polygons.polygon_cell.tolist(), *polygons.missing.tolist()]) == parts
+    check_whole(mesh, split)
+    faces = [part.tolist() for part in np.split(polygons.corners, polygons.offsets[1:-1])] if len(polygons) else []
+    sides: dict[tuple[int, int], bool] = {}
+    for face, barred_sides in zip(faces, np.split(polygons.is_barrier, polygons.offsets[1:-1]), strict=bool(faces)):
+        assert len(set(face)) == len(face) >= 3
+        for a, b, is_barrier in zip(face, face[1:] + face[:1], barred_sides.tolist(), strict=True):
+            assert (a, b) not in sides
+            sides[a, b] = is_barrier
+    assert all(sides[side[::-1]] == barrier for side, barrier in sides.items() if side[::-1] in sides)
+    triangles = polygons.triangles()
+    assert len(triangles) == len(polygons.corners) - 2 * len(faces)
+    if not len(polygons.missing):
+        assert mesh.is_closed == all(side[::-1] in sides for side in sides)
+        check_covered(mesh, polygons, edges, [side for side, barrier in sides.items() if barrier])
+        chi = mesh.vertex_count - mesh.edge_count + mesh.face_count
+        assert len(polygons.vertices) - len({frozenset(side) for side in sides}) + len(faces) == chi
+
+
+def check_whole(mesh: sb.Mesh, split: sb.SplitMesh) -> None:
+    """Triangles that each have two neighbors across a side at most, as much area, and the border of the surface."""
+    corners = split.vertices[split.triangles]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    np.testing.assert_allclose(areas.sum(), mesh.area, rtol=1e-9)
+    sides = Counter((a, b) for t in split.triangles.tolist() for a, b in zip(t, t[1:] + t[:1], strict=True))
+    assert max(sides.values()) == 1
+    open_sides = np.array([side for side in sides if side[::-1] not in sides], dtype=int).reshape(-1, 2)
+    ends = split.vertices[open_sides]
+    border = sum(
+        np.linalg.norm(mesh.vertices[loop] - mesh.vertices[np.roll(loop, -1)], axis=1).sum()
+        for loop in mesh.boundary_loops
+    )
+    np.testing.assert_allclose(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum(), border, rtol=1e-9)
+
+
+def check_covered(mesh: sb.Mesh, polygons: sb.CellPolygons, edges: np.ndarray, sides: list[tuple[int, int]]) -> None:
+    """Every point tried of a barrier lies on a side, of one polygon on the border, of two elsewhere."""
+    ends = polygons.vertices[np.array(sides).reshape(-1, 2)]
+    begin, way = ends[:, 0], ends[:, 1] - ends[:, 0]
+    has_copies = len(np.unique(mesh.vertices, axis=0)) < mesh.vertex_count  # other sides may lie there, too
+    for a, b in edges.tolist():
+        for share in (0.137, 0.519, 0.881):
+            point = (1 - share) * mesh.vertices[a] + share * mesh.vertices[b]
+            along = np.clip(((point - begin) * way).sum(axis=1) / (way**2).sum(axis=1), 0, 1)
+            off = np.linalg.norm(begin + along[:, None] * way - point, axis=1)
+            found, wanted = int((off < 1e-5 * longest_edge(mesh)).sum()), 1 if is_border(mesh, a, b) else 2
+            assert found == wanted or (has_copies and found > wanted), f"edge {a}, {b} at {share}: {found} sides"
+
+
+def is_border(mesh: sb.Mesh, a: int, b: int) -> bool:
+    """Whether one face alone has the edge."""
+    return int(((mesh.triangles == a).any(axis=1) & (mesh.triangles == b).any(axis=1)).sum()) == 1
+
+
+@guards("super_patches", "SuperPatches")
+def patches_by_recount(mesh: sb.Mesh, rng: Random) -> None:
+    """Planes by singular values of samples, distances of corners and regions to them, sharp edges by angles of faces,
+    and distances of points of the regions from the polygons' triangles, one by one.
+    """
+    if not is_usual(mesh) or mesh.face_count > 100:
+        return
+    sharp = float(rng.uniform(0.4, 1.2))
+    error = 0.1 * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    try:
+        patches = sb.super_patches(mesh, error=error, sharp=sharp)
+    except sb.InputError as refusal:
+        assert "more patches than the mesh has faces" in str(refusal)
+        return
+    assert not len(patches.polygons.missing)
+    assert {frozenset(edge) for edge in patches.sharp_edges.tolist()} == sharp_by_normals(mesh, sharp)
+    polygons, regions = patches.polygons, patches.regions
+    for i, face in enumerate(patches.faces):
+        corners = regions.vertices[regions.triangles[patches.region_patch == i]]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        # The middles of the sides, each a third of the area, have the second moments of a triangle.
+        middles = ((corners + np.roll(corners, -1, axis=1)) / 2).reshape(-1, 3)
+        weights = np.repeat(areas, 3)
+        center = (weights[:, None] * middles).sum(axis=0) / weights.sum()
+        values, axes = np.linalg.svd(np.sqrt(weights)[:, None] * (middles - center))[1:]
+        if len(values) < 3 or values[1] - values[2] < 1e-6 * values[0]:
+            continue  # any plane through a line is as near
+        off = abs((corners.reshape(-1, 3) - center) @ axes[2]).max()
+        np.testing.assert_allclose(patches.region_distance[i], off, atol=1e-6 * longest_edge(mesh))
+        off = abs((polygons.vertices[face] - center) @ axes[2]).max()
+        np.testing.assert_allclose(patches.corner_distance[i], off, atol=1e-6 * longest_edge(mesh))
+    assert patches.corner_distance.max() <= error
+    triangles = polygons.vertices[patches.triangles]
+    for point in np.vstack([mesh.vertices, mesh.vertices[mesh.triangles].mean(axis=1)]):
+        assert distance_to_triangles(point, triangles) <= error * (1 + 1e-9)
+
+
+def sharp_by_normals(mesh: sb.Mesh, sharp: float) -> set[frozenset[int]]:
+    """Edges of one face, or of two whose normals differ by more."""
+    corners = mesh.vertices[mesh.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    owners: dict[frozenset[int], list[int]] = {}
+    for f, t in enumerate(mesh.triangles.tolist()):
+        for a, b in zip(t, t[1:] + t[:1], strict=True):
+            owners.setdefault(frozenset((a, b)), []).append(f)
+    turned = {
+        edge: np.arctan2(np.linalg.norm(np.cross(*normals[own])), np.dot(*normals[own])) if len(own) == 2 else np.pi
+        for edge, own in owners.items()
+    }
+    return {edge for edge, angle in turned.items() if angle > sharp}
+
+
+def distance_to_triangles(point: Floats, triangles: Floats) -> float:
+    """From the nearest of them: to the foot within, else to the sides."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    size = np.linalg.norm(normal, axis=1)
+    best = np.inf
+    inside = size > 0
+    for p, q in ((a, b), (b, c), (c, a)):
+        way = q - p
+        along = np.clip(((point - p) * way).sum(axis=1) / np.maximum((way**2).sum(axis=1), 1e-300), 0, 1)
+        best = min(best, float(np.linalg.norm(p + along[:, None] * way - point, axis=1).min()))
+        inside &= (np.cross(way, point - p) * normal).sum(axis=1) >= 0
+    if inside.any():
+        best = min(best, float((abs(((point - a) * normal).sum(axis=1))[inside] / size[inside]).min()))
+    return best

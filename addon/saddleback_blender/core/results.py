@@ -191,7 +191,8 @@ class SurfacePolygons(CellPolygons):
     corner_faces: Indices  # (corners,) of the surface's triangles: on the side of the polygon of each corner
     corner_barycentric: Reals  # (corners, 3)
     missing: Indices  # cells that are no disks and have no polygon
-    added: int  # so many cells at the end were put there so that all are disks
+    added: int  # so many more than the cells; of cells: put there at the end so that all are disks
+    is_patches: bool = False  # of their own, in place of the cells
 
     @property
     def nbytes(self) -> int:

@@ -34,7 +34,7 @@ from .solids.shell_solid import thicken
 from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
 from .surfaces.normals import upright_normals
-from .surfaces.polygons import polygons_of
+from .surfaces.polygons import patches_of, polygons_of
 from .surfaces.surface_places import compact_points, on_whole_surface, surface_points
 
 
@@ -242,7 +242,8 @@ def _annealing(request: TessellateRequest, iterations: int) -> int:
 def _closed_ball(request: TessellateRequest, iterations: int) -> bool:
     """Tells whether sites may be exchanged for the sake of the dual mesh: not those that are to stay where they are."""
     settings = request.settings
-    return bool(iterations) and (settings.make_dual or settings.makes_polygons) and settings.keep_count
+    wants_polygons = settings.makes_polygons and not settings.makes_patches
+    return bool(iterations) and (settings.make_dual or wants_polygons) and settings.keep_count
 
 
 def _solve(
@@ -374,12 +375,21 @@ def _tone(surface: Surface, sites: Any, density: Reals) -> Reals:
 def _polygons(
     request: TessellateRequest, mesh: Any, solved: Solved, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> SurfacePolygons:
-    policy = request.settings.dual_policy
+    settings, surface = request.settings, request.surface
 
     def build() -> SurfacePolygons:
-        return polygons_of(mesh, solved.cells, policy, request.threads, progress)
+        if settings.makes_patches:
+            return patches_of(mesh, settings, surface.extent, request.threads, progress)
+        return polygons_of(mesh, solved.cells, settings.dual_policy, request.threads, progress)
 
-    found = cache.get(("polygons", *key, policy), build, lambda made: made.nbytes)
+    if settings.makes_patches:
+        sharp = settings.hold_sharp and settings.sharp_angle
+        found = cache.get(
+            ("patches", surface.key, digest(settings.patch_error, sharp)), build, lambda made: made.nbytes
+        )
+        found = replace(found, added=len(found.polygon_cell) - len(solved.cells.sites))
+    else:
+        found = cache.get(("polygons", *key, settings.dual_policy), build, lambda made: made.nbytes)
     return on_whole_surface(found, request.surface)
 
 

@@ -95,7 +95,9 @@ class TessellateSettings(DensitySettings, PatternSettings, BarrierSettings):
     thickness_by: str = ""
     underside: bool = False
     local_uv: bool = False
-    cell_faces: str = "SURFACE"  # SURFACE = as many as the surface has, ONE = a polygon for each cell
+    # SURFACE = as many as the surface has, ONE = a polygon for each cell, PATCHES = as few polygons as the error needs
+    cell_faces: str = "SURFACE"
+    patch_error: float = 1.0  # of PATCHES, in percent of the surface's extent
     make_centers: bool = False
     instance_object: str = ""
     instance_dots: bool = False  # a dot on each center, where no object is chosen
@@ -127,8 +129,13 @@ class TessellateSettings(DensitySettings, PatternSettings, BarrierSettings):
 
     @property
     def makes_polygons(self) -> bool:
-        """Tells whether cells become one polygon each."""
-        return self.make_cells and self.cell_faces == "ONE"
+        """Tells whether what is made has one polygon each."""
+        return self.make_cells and self.cell_faces != "SURFACE"
+
+    @property
+    def makes_patches(self) -> bool:
+        """Tells whether polygons are patches by an error in place of the cells."""
+        return self.make_cells and self.cell_faces == "PATCHES"
 
 
 @dataclass(frozen=True)

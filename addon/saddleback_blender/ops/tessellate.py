@@ -116,6 +116,10 @@ class CellsOperator(SurfaceOperator):
     ) -> Callable[[Progress], CellsResult]:
         settings = settings_of(self, TessellateSettings)
         _check(source, settings)
+        if settings.mirror_x and settings.makes_patches:
+            raise BadInputError(
+                f"'{source.name}': patches are not mirrored; switch X Mirror off, or choose One as the cells' Faces"
+            )
         if settings.mirror_x and settings.barriers != "NONE":
             raise BadInputError(
                 f"'{source.name}': barriers are not mirrored; switch X Mirror off, or choose no barriers"
@@ -177,7 +181,7 @@ class CellsOperator(SurfaceOperator):
 
     def lying(self) -> dict[str, bool]:
         """Cells without a height do."""
-        return {CELLS_ROLE: self.cell_faces == "ONE" or not self._lengths.get("thickness", self.thickness)}
+        return {CELLS_ROLE: self.cell_faces != "SURFACE" or not self._lengths.get("thickness", self.thickness)}
 
     def notes(self, result: CellsResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
@@ -308,7 +312,9 @@ def _added(result: CellsResult) -> str:
     moved = "1 cell" if result.exchanged == 1 else f"{result.exchanged} cells"
     what = "polygons need" if result.dual is None else "the dual mesh needs"
     text = f", {moved} moved to where {what} them" if result.exchanged else ""
-    if result.polygons is not None and result.polygons.added:
+    if result.polygons is not None and result.polygons.is_patches:
+        text += f", {len(result.polygons.polygon_cell)} patches"
+    elif result.polygons is not None and result.polygons.added:
         text += f", {result.polygons.added} cells added so that all can be polygons"
     if result.dual is not None and result.dual.added:
         text += f", {result.dual.added} vertices added to the dual mesh"

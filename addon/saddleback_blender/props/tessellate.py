@@ -42,6 +42,11 @@ DUAL_POLICIES = (
 CELL_FACES = (
     ("SURFACE", "Many", "As many as the surface has there, with a gap, a height and a bevel"),
     ("ONE", "One", "One polygon for each cell, with the materials and layers of the surface: a mesh to go on with"),
+    (
+        "PATCHES",
+        "Patches",
+        "As few polygons as the error needs, whatever the count: flat parts are one, and sharp edges stay",
+    ),
 )
 DUAL_FACES = (
     ("TRIANGLES", "Triangles", "One for each place where three cells meet"),
@@ -208,6 +213,19 @@ TESSELLATE: dict[str, Any] = {
     "underside": switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
     "local_uv": switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
     "cell_faces": choice("Cell Faces", "How many faces a cell has", CELL_FACES, "SURFACE"),
+    "patch_error": FloatProperty(
+        name="Error",
+        description="How far the patches may be from the surface, and their corners from a plane, in percent of the "
+        "object's size: the diagonal of its box",
+        default=1.0,
+        min=0.01,
+        max=100.0,
+        soft_max=10.0,
+        precision=2,
+        step=10,
+        subtype="PERCENTAGE",
+        options={"SKIP_SAVE"},
+    ),
     "make_centers": switch("Centers", "Make an object of points at the cells' centers", False),
     "instance_object": name_of("Instance", "The object to put on every center"),
     "instance_dots": switch("Dots", "Put a flat round dot on every center, where no object is chosen", False),

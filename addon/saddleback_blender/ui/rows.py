@@ -138,6 +138,8 @@ def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.active = settings.make_cells
     if hasattr(settings, "cell_faces"):  # cells of the plane have one anyway
         layout.prop(settings, "cell_faces", text="Faces")
+        if settings.cell_faces == "PATCHES":
+            layout.prop(settings, "patch_error")
         layout = layout.column()
         layout.active = settings.cell_faces == "SURFACE"
     _draw_painted_length(layout.column(), settings, "gap")

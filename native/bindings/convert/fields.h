@@ -64,8 +64,8 @@ inline auto fields_of(SplitMesh& of) {
   return std::tie(vertices, triangles, triangle_cell, vertex_origin);
 }
 inline auto fields_of(CellPolygons& of) {
-  auto& [points, vertices, corners, offsets, polygon_cell, missing, sites, added] = of;
-  return std::tie(points, vertices, corners, offsets, polygon_cell, missing, sites, added);
+  auto& [points, vertices, corners, offsets, polygon_cell, missing, sites, added, is_barrier] = of;
+  return std::tie(points, vertices, corners, offsets, polygon_cell, missing, sites, added, is_barrier);
 }
 inline auto fields_of(DualIssue& of) {
   auto& [kind, cell, other, place] = of;

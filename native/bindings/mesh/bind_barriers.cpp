@@ -3,7 +3,9 @@
 #include <limits>
 
 #include "saddleback/mesh/barriers.h"
+#include "saddleback/tessellation/cell_polygons.h"
 
+#include "convert/cells.h"
 #include "convert/curves.h"
 #include "convert/points.h"
 #include "convert/state.h"
@@ -79,6 +81,14 @@ py::array least(const Barred& barred, const py::object& values) {
   for (const Index copy : copies_of(barred, given))
     result.push_back(copy == k_none ? std::numeric_limits<double>::infinity() : given.values[copy]);
   return to_array(std::move(result));
+}
+
+py::tuple polygons(const Barred& barred, const py::object& cells, const py::object& bend, const py::object& tolerance) {
+  const GeodesicVoronoi& diagram = as_cells(cells, "cells").diagram;
+  const CellPolygonOptions options{.bend = as_real(bend, "bend"), .tolerance = as_real(tolerance, "tolerance")};
+  SplitMesh split;
+  CellPolygons made = without_gil([&] { return cell_polygons(barred.whole_mesh(), barred, diagram, options, &split); });
+  return py::make_tuple(std::move(made), std::move(split));
 }
 
 std::string describe(const Barred& barred) {
@@ -230,6 +240,36 @@ Notes
 -----
 O(V + W).)";
 
+constexpr const char* k_polygons_doc = R"(Make a polygon of the whole surface for each cell of the barred one.
+
+Sides run along the barriers, with a corner wherever those bend, meet or end. Cells on both sides of a barrier share
+corners and sides there, so polygons of a closed surface are closed. Where a barrier ends within a cell, the cell's
+boundary is moved to that end, or the cell becomes two: those that it adds come after the last site's.
+
+Parameters
+----------
+cells : GeodesicVoronoi
+    Of `mesh`.
+bend : float
+    How far other sides may leave the boundary that they stand for, as for `GeodesicVoronoi.polygons`.
+tolerance : float
+    A length that it is never more than.
+
+Returns
+-------
+tuple of CellPolygons and SplitMesh
+    The polygons, on `whole`; `missing` names cells that are no disks. And the whole mesh cut along the boundaries of the
+    cells: what each polygon stands for.
+
+Raises
+------
+InputError
+    Cells of another mesh; a negative bend or tolerance.
+
+Notes
+-----
+O((V + F) log F), and O(F) for each end of a barrier within a cell.)";
+
 }  // namespace
 
 void bind_barriers(py::module_& m) {
@@ -263,6 +303,8 @@ void bind_barriers(py::module_& m) {
             return to_array(copies_of(barred, as_reals(values, "values")));
           },
           py::arg("values"), k_copies_doc)
+      .def("polygons", &polygons, py::arg("cells"), py::kw_only(), py::arg("bend") = 0.15,
+           py::arg("tolerance") = std::numeric_limits<double>::infinity(), k_polygons_doc)
       .def("__repr__", &describe);
   m.def("add_barriers", &with_barriers, py::arg("mesh"), py::kw_only(), py::arg("edges") = py::none(),
         py::arg("curves") = py::none(), py::arg("faces") = py::none(), py::arg("job") = py::none(), k_add_doc);

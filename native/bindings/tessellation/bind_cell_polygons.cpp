@@ -1,5 +1,6 @@
 // CellPolygons.
 
+#include <algorithm>
 #include <span>
 
 #include "saddleback/tessellation/cell_polygons.h"
@@ -37,7 +38,21 @@ void bind_cell_polygons(py::module_& m) {
       .def_property_readonly(
           "sites", [](const CellPolygons& p) { return p.sites; },
           "SurfacePoints: of the cells; those that repair added come last.")
+      .def_property_readonly(
+          "is_barrier",
+          [](const CellPolygons& p) {
+            py::array_t<bool> result(static_cast<py::ssize_t>(p.is_barrier.size()));
+            std::copy(p.is_barrier.begin(), p.is_barrier.end(), result.mutable_data());
+            return result;
+          },
+          "(m,) bool: by `corners`, whether the side from there on runs along a barrier.")
       .def_readonly("added", &CellPolygons::added, "Number of sites that repair added.")
+      .def(
+          "triangles",
+          [](const CellPolygons& p) { return to_array(without_gil([&] { return polygon_triangles(p); })); },
+          "The polygons cut into triangles between their corners, (t, 3) int32: a polygon of n corners into n - 2, in "
+          "the "
+          "order of the polygons; a fan where none of its triangles is turned over, else as Delaunay's as can be.")
       .def("__len__", [](const CellPolygons& p) { return p.polygon_cell.size(); })
       .def("__repr__", [](const CellPolygons& p) {
         return message("<saddleback.CellPolygons of ", p.polygon_cell.size(), " polygons, ", p.vertices.size(),

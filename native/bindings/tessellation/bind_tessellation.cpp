@@ -139,11 +139,13 @@ Notes
 -----
 O(cells + boundaries). H. Edelsbrunner, N. R. Shah: Triangulating topological spaces, 1997 (the closed-ball property).)";
 
-CellPolygons polygons(const Cells& cells, const std::string& policy, const py::object& bend, const py::object& threads,
-                      const py::object& job) {
+CellPolygons polygons(const Cells& cells, const std::string& policy, const py::object& bend,
+                      const py::object& tolerance, const py::object& threads, const py::object& job) {
   const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
-  const CellPolygonOptions options{
-      .policy = as_policy(policy), .bend = as_real(bend, "bend"), .threads = as_integer(threads, "threads")};
+  const CellPolygonOptions options{.policy = as_policy(policy),
+                                   .bend = as_real(bend, "bend"),
+                                   .tolerance = as_real(tolerance, "tolerance"),
+                                   .threads = as_integer(threads, "threads")};
   const JobIn token(job);
   return without_gil([&] { return cell_polygons(graph, cells.diagram, options, token); });
 }
@@ -163,6 +165,8 @@ policy : str
 bend : float
     How far a side may leave the boundary that it stands for, in parts of the size (root of the area) of the smaller of
     its cells; where it would be more, there are corners on the way. inf: none but those needed.
+tolerance : float
+    A length that it is never more than.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -469,7 +473,8 @@ void bind_tessellation(py::module_& m) {
       .def("dual", &dual, py::arg("policy") = "repair", py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_dual_doc)
       .def("polygons", &polygons, py::arg("policy") = "repair", py::kw_only(), py::arg("bend") = 0.15,
-           py::arg("threads") = 0, py::arg("job") = py::none(), k_polygons_doc)
+           py::arg("tolerance") = std::numeric_limits<double>::infinity(), py::arg("threads") = 0,
+           py::arg("job") = py::none(), k_polygons_doc)
       .def("cells_at", &cells_at, py::arg("points"),
            "The cells of points of the surface (vertices or SurfacePoints), (m,) int32. Ties go to the smaller cell. "
            "O(cells that share a face) each.")

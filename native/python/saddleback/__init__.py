@@ -124,6 +124,7 @@ from saddleback._saddleback import (
 from saddleback.density_match import DensityMatch, density_match
 from saddleback.mesh_files import write_curves, write_mesh
 from saddleback.metrics import anisotropic_metric, curvature_metric
+from saddleback.patches import SuperPatches, super_patches
 from saddleback.placement_files import read_placement_field, read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.quality_plot import quality_plot
@@ -185,6 +186,7 @@ __all__ = [
     "Streamline",
     "Stroke",
     "StrokeMap",
+    "SuperPatches",
     "SurfaceCurve",
     "SurfacePoints",
     "SweepCircle",
@@ -252,6 +254,7 @@ __all__ = [
     "spread_values",
     "streamline",
     "stroke_map",
+    "super_patches",
     "trace",
     "triangle_edges",
     "triangle_quality",

@@ -591,6 +591,10 @@ class BarredMesh:
         -----
         O(1) a point.
         """
+    def polygons(
+        self, cells: GeodesicVoronoi, *, bend: SupportsFloat = 0.15, tolerance: SupportsFloat = ...
+    ) -> tuple[CellPolygons, SplitMesh]:
+        """x"""
     def values_to_barred(self, values: ArrayLike) -> _Floats:
         """Bring values of the whole mesh's vertices, as a density, to those of the barred one.
 
@@ -1889,6 +1893,7 @@ class GeodesicVoronoi:
         policy: Literal["repair", "strict", "fail"] = "repair",
         *,
         bend: SupportsFloat = 0.15,
+        tolerance: SupportsFloat = ...,
         threads: SupportsIndex = 0,
         job: Job | None = None,
     ) -> CellPolygons:
@@ -1957,8 +1962,13 @@ class CellPolygons:
     def sites(self) -> SurfacePoints:
         """SurfacePoints: of the cells; those that repair added come last."""
     @property
+    def is_barrier(self) -> NDArray[np.bool_]:
+        """(m,) bool"""
+    @property
     def added(self) -> int:
         """Number of sites that repair added."""
+    def triangles(self) -> _Indices:
+        """x"""
     def __len__(self) -> int: ...
 
 @final

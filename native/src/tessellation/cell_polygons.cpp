@@ -7,10 +7,15 @@
 
 #include "saddleback/error.h"
 
-#include "tessellation/cells/cell_topology.h"
+#include "mesh/read/triangulate_polygon.h"
+#include "tessellation/cells/parted_surface.h"
 
 namespace saddleback {
 namespace {
+
+// In parts of a cell: a barrier that leaves a side by less is straight but for rounding, as coordinates often come as
+// float32.
+constexpr double k_straight = 1e-6;
 
 double distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
   const Vec3 way = b - a;
@@ -43,43 +48,31 @@ std::vector<Index> bending_points(std::span<const Vec3> positions, std::span<con
   return found;
 }
 
-/// Twins of the half-edges of triangles in which every edge has two at most.
-std::vector<Index> twins_of(const std::vector<Triangle>& triangles) {
-  struct Side {
-    Index low, high, halfedge;
-  };
-  std::vector<Side> sides;
-  for (Index h = 0; h < static_cast<Index>(3 * triangles.size()); ++h) {
-    const auto [low, high] = std::minmax(triangles[h / 3][h % 3], triangles[h / 3][Mesh::next(h) % 3]);
-    sides.push_back({low, high, h});
-  }
-  std::ranges::sort(sides, {}, [](const Side& side) { return std::array{side.low, side.high, side.halfedge}; });
-  std::vector<Index> twins(sides.size(), k_none);
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
-    twins[sides[i].halfedge] = sides[i + 1].halfedge;
-    twins[sides[i + 1].halfedge] = sides[i].halfedge;
-  }
-  return twins;
-}
-
 class PolygonMaker {
  public:
-  PolygonMaker(const Mesh& mesh, const GeodesicVoronoi& cells, double bend)
-      : mesh_(mesh), cells_(cells), bend_(bend), split_(cells.split(mesh)), twins_(twins_of(split_.triangles)) {
+  PolygonMaker(const Mesh& mesh, PartedSurface surface, const CellPolygonOptions& options)
+      : mesh_(mesh),
+        options_(options),
+        surface_(std::move(surface)),
+        split_(surface_.split),
+        twins_(twins_of(split_.triangles)) {
+    find_lines();
+    count_characteristics();
     find_chains();
     simplify();
     add_needed();
     put_together();
   }
   CellPolygons take() { return std::move(result_); }
+  SplitMesh take_split() { return std::move(surface_.split); }
 
  private:
   /// A boundary from corner to corner, or all around where it has none.
   struct Chain {
     std::vector<Index> vertices;  ///< of the split mesh, also the last
     std::vector<Index> inner;     ///< those that become corners, in order
-    double size;                  ///< of the smaller cell beside it
+    double bend;                  ///< how far its sides may leave it
+    bool is_barrier;
   };
   /// The chain that a half-edge begins, for the cell on its left.
   struct Use {
@@ -91,8 +84,12 @@ class PolygonMaker {
   Index cell_of(Index h) const { return split_.triangle_cell[h / 3]; }
   Index from(Index h) const { return split_.triangles[h / 3][h % 3]; }
   Index to(Index h) const { return from(Mesh::next(h)); }
-  bool is_line(Index h) const { return twins_[h] == k_none || cell_of(twins_[h]) != cell_of(h); }
-  bool is_corner(Index vertex) const { return degree_[vertex] > 2; }
+  bool is_barrier(Index h) const { return surface_.lines[h] == PartedSurface::barrier; }
+  bool is_line(Index h) const {
+    return surface_.lines[h] != PartedSurface::none || twins_[h] == k_none || cell_of(twins_[h]) != cell_of(h);
+  }
+  /// Where lines meet or end, or where a barrier goes on as another line.
+  bool is_corner(Index vertex) const { return degree_[vertex] > 2 || barriers_[vertex] == 1; }
   /// The next half-edge around the same cell.
   Index onward(Index h) const {
     Index next = Mesh::next(h);
@@ -100,14 +97,33 @@ class PolygonMaker {
     return next;
   }
 
+  void find_lines() {
+    degree_.assign(split_.vertices.size(), 0);
+    barriers_ = degree_;
+    for (Index h = 0; h < static_cast<Index>(twins_.size()); ++h) {
+      if (!is_line(h) || (twins_[h] != k_none && twins_[h] < h)) continue;
+      for (const Index end : {from(h), to(h)}) {
+        ++degree_[end];
+        if (is_barrier(h)) ++barriers_[end];
+      }
+    }
+  }
+
+  /// Faces - edges + vertices of each cell without its border: 1 for a disk.
+  void count_characteristics() {
+    std::vector<Index> twice_edges(surface_.areas.size(), 0);
+    std::vector<std::uint8_t> seen(split_.vertices.size(), 0);
+    characteristic_.assign(surface_.areas.size(), 0);
+    for (Index h = 0; h < static_cast<Index>(twins_.size()); ++h) {
+      if (h % 3 == 0) ++characteristic_[cell_of(h)];
+      if (!is_line(h)) ++twice_edges[cell_of(h)];
+      if (degree_[from(h)] == 0 && !std::exchange(seen[from(h)], 1)) ++characteristic_[cell_of(h)];
+    }
+    for (std::size_t cell = 0; cell < twice_edges.size(); ++cell) characteristic_[cell] -= twice_edges[cell] / 2;
+  }
+
   void find_chains() {
     const auto count = static_cast<Index>(twins_.size());
-    degree_.assign(split_.vertices.size(), 0);
-    for (Index h = 0; h < count; ++h) {
-      if (!is_line(h) || (twins_[h] != k_none && twins_[h] < h)) continue;
-      ++degree_[from(h)];
-      ++degree_[to(h)];
-    }
     uses_.resize(count);
     std::vector<std::uint8_t> seen(count, 0);
     for (const bool is_loop : {false, true}) {
@@ -130,20 +146,23 @@ class PolygonMaker {
     firsts_.push_back(first);
     // From the other side the same chain begins where this one ends.
     const Index back = twins_[last];
-    if (is_loop && twins_[first] != k_none) unfit_.push_back(cell_of(first));
+    if (is_loop && twins_[first] != k_none && characteristic_[cell_of(twins_[first])] == 1)
+      unfit_.push_back(cell_of(first));
     if (!is_loop && back != k_none && uses_[back].chain != k_none) {
       use.chain = uses_[back].chain;
       use.is_forward = false;
       return;
     }
-    double area = cells_.areas[cell_of(first)];
-    if (twins_[first] != k_none) area = std::min(area, cells_.areas[cell_of(twins_[first])]);
+    double area = surface_.areas[cell_of(first)];
+    if (twins_[first] != k_none) area = std::min(area, surface_.areas[cell_of(twins_[first])]);
+    const double bend = is_barrier(first) ? k_straight : options_.bend;
     use.chain = static_cast<Index>(chains_.size());
-    chains_.push_back({std::move(vertices), {}, std::sqrt(area)});
+    chains_.push_back(
+        {std::move(vertices), {}, std::min(bend * std::sqrt(area), options_.tolerance), is_barrier(first)});
   }
 
   void simplify() {
-    for (Chain& chain : chains_) chain.inner = bending_points(split_.vertices, chain.vertices, bend_ * chain.size);
+    for (Chain& chain : chains_) chain.inner = bending_points(split_.vertices, chain.vertices, chain.bend);
   }
 
   /// Gives corners to chains that would join the same corners as another one, or end where they begin.
@@ -190,26 +209,26 @@ class PolygonMaker {
   SurfacePoint place(Index vertex) const {
     const Index of_mesh = mesh_.vertex_count(), of_split = static_cast<Index>(split_.vertices.size());
     if (vertex < of_mesh) return at_vertex(mesh_, vertex);
-    return vertex < of_split ? cells_.points[vertex - of_mesh] : added_[vertex - of_split];
+    return vertex < of_split ? surface_.places[vertex - of_mesh] : added_[vertex - of_split];
   }
 
   void put_together() {
-    std::vector<std::vector<Index>> starts(cells_.sites.size());  // a half-edge for each boundary of a cell
+    std::vector<std::vector<Index>> starts(surface_.areas.size());  // a half-edge for each boundary of a cell
     std::vector<std::uint8_t> done(twins_.size(), 0);
     for (const Index first : firsts_) {
       if (done[first]) continue;
       starts[cell_of(first)].push_back(first);
       for (Index h = first; !done[h]; h = onward(uses_[h].last)) done[h] = 1;
     }
-    const std::vector<Index> characteristic = cell_characteristics(mesh_, cells_);
     std::vector<std::uint8_t> is_unfit(starts.size(), 0);
     for (const Index cell : unfit_) is_unfit[cell] = 1;
     result_.offsets.push_back(0);
-    result_.sites = cells_.sites;
     for (Index cell = 0; cell < static_cast<Index>(starts.size()); ++cell) {
-      if (cells_.areas[cell] == 0) continue;  // coincides with another site
+      if (surface_.areas[cell] == 0) continue;  // coincides with another site
       std::vector<Index> around;
-      if (starts[cell].size() == 1 && characteristic[cell] == 1 && !is_unfit[cell]) around = loop(starts[cell][0]);
+      std::vector<std::uint8_t> barred;
+      if (starts[cell].size() == 1 && characteristic_[cell] == 1 && !is_unfit[cell])
+        around = loop(starts[cell][0], barred);
       std::vector<Index> sorted = around;
       std::ranges::sort(sorted);
       if (around.empty() || std::ranges::adjacent_find(sorted) != sorted.end()) {
@@ -217,14 +236,15 @@ class PolygonMaker {
         continue;
       }
       result_.corners.insert(result_.corners.end(), around.begin(), around.end());
+      result_.is_barrier.insert(result_.is_barrier.end(), barred.begin(), barred.end());
       result_.offsets.push_back(static_cast<Index>(result_.corners.size()));
       result_.polygon_cell.push_back(cell);
     }
     number_vertices();
   }
 
-  /// The corners around a cell.
-  std::vector<Index> loop(Index first) const {
+  /// The corners around a cell, and whether the sides after them are barriers.
+  std::vector<Index> loop(Index first, std::vector<std::uint8_t>& barred) const {
     std::vector<Index> around;
     Index h = first;
     do {
@@ -234,6 +254,7 @@ class PolygonMaker {
         around.insert(around.end(), chain.inner.begin(), chain.inner.end());
       else
         around.insert(around.end(), chain.inner.rbegin(), chain.inner.rend());
+      barred.resize(around.size(), chain.is_barrier);
       h = onward(uses_[h].last);
     } while (h != first);
     return around;
@@ -252,25 +273,38 @@ class PolygonMaker {
   }
 
   const Mesh& mesh_;
-  const GeodesicVoronoi& cells_;
-  const double bend_;
-  const SplitMesh split_;
+  const CellPolygonOptions& options_;
+  PartedSurface surface_;
+  const SplitMesh& split_;  ///< the surface's
   const std::vector<Index> twins_;
-  std::vector<Index> degree_;  ///< of each vertex: edges there between two cells, or of the mesh's boundary
-  std::vector<Use> uses_;      ///< by half-edge
-  std::vector<Index> firsts_;  ///< the half-edges that begin chains
+  std::vector<Index> degree_, barriers_;  ///< of each vertex: the edges there that are lines, and those on barriers
+  std::vector<Index> characteristic_;     ///< of each cell
+  std::vector<Use> uses_;                 ///< by half-edge
+  std::vector<Index> firsts_;             ///< the half-edges that begin chains
   std::vector<Chain> chains_;
   SurfacePoints added_;  ///< corners that are no vertices of the split mesh
   std::vector<Index> unfit_;
   CellPolygons result_;
 };
 
+void check(const CellPolygonOptions& options) {
+  if (!(options.bend >= 0)) throw InputError(message("bend: wanted a number of 0 or more, got ", options.bend));
+  if (!(options.tolerance >= 0))
+    throw InputError(message("tolerance: wanted a length of 0 or more, got ", options.tolerance));
+}
+
+CellPolygons polygons_of(const Mesh& mesh, const GeodesicVoronoi& cells, const CellPolygonOptions& options) {
+  CellPolygons result = PolygonMaker(mesh, parted_surface(mesh, cells), options).take();
+  result.sites = cells.sites;
+  return result;
+}
+
 }  // namespace
 
 CellPolygons cell_polygons(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells,
                            const CellPolygonOptions& options, Job* job) {
-  if (!(options.bend >= 0)) throw InputError(message("bend: wanted a number of 0 or more, got ", options.bend));
-  CellPolygons result = PolygonMaker(graph.mesh(), cells, options.bend).take();
+  check(options);
+  CellPolygons result = polygons_of(graph.mesh(), cells, options);
   if (result.missing.empty() || options.policy == DualPolicy::strict) {
     JobStage(job, "Making polygons").update(1);
     return result;
@@ -280,9 +314,36 @@ CellPolygons cell_polygons(const SaddleVertexGraph& graph, const GeodesicVoronoi
                              result.missing[0], ", which is no disk; use more cells, or policy='repair'"));
   }
   const DualMesh dual = dual_mesh(graph, cells, DualPolicy::repair, options.threads, job);
-  result = PolygonMaker(graph.mesh(), *dual.repaired, options.bend).take();
+  result = polygons_of(graph.mesh(), *dual.repaired, options);
   result.added = dual.added;
   return result;
+}
+
+CellPolygons cell_polygons(const Mesh& whole, const BarredMesh& barred, const GeodesicVoronoi& cells,
+                           const CellPolygonOptions& options, SplitMesh* split) {
+  check(options);
+  if (cells.vertex_cell.size() != barred.vertex_points.size())
+    throw InputError(message("cells: of a mesh of ", cells.vertex_cell.size(), " vertices, the barred one has ",
+                             barred.vertex_points.size()));
+  PolygonMaker maker(whole, parted_surface(whole, barred, cells), options);
+  CellPolygons result = maker.take();
+  if (split) *split = maker.take_split();
+  result.sites = points_on_whole(whole, barred, cells.sites, "cells");
+  return result;
+}
+
+std::vector<Triangle> polygon_triangles(const CellPolygons& polygons) {
+  if (polygons.vertices.empty()) return {};
+  PolygonTriangulator triangulator;
+  const std::span xyz(polygons.vertices.front().data(), 3 * polygons.vertices.size());
+  std::vector<Index> corners;
+  for (std::size_t i = 0; i + 1 < polygons.offsets.size(); ++i) {
+    const Index begin = polygons.offsets[i], end = polygons.offsets[i + 1];
+    triangulator.triangulate(std::span(polygons.corners).subspan(begin, end - begin), xyz, corners, {});
+  }
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < corners.size(); i += 3) triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  return triangles;
 }
 
 }  // namespace saddleback

@@ -96,6 +96,32 @@ def test_what_cannot_be_a_polygon_is_told_or_mended(capfd):
     assert "no face, since none can be as large" in capfd.readouterr().out
 
 
+def test_patches_are_as_few_as_the_error_needs(capfd):
+    bpy.ops.mesh.primitive_cube_add(location=(3, 1, 0), rotation=(0.3, 0.2, 0.1))
+    box = bpy.context.object
+    box.modifiers.new("Finer", "SUBSURF").subdivision_type = "SIMPLE"
+    patches = {**POLYGONS, "cell_faces": "PATCHES"}
+    item = made(box, **patches, patch_error=0.1, use_modifiers=True)
+    assert "6 patches" in capfd.readouterr().out
+    check_mesh(item.data, 2)
+    assert [len(polygon.vertices) for polygon in item.data.polygons] == [4] * 6
+    np.testing.assert_allclose(
+        sorted(map(tuple, np.round(world_positions(item), 5))), sorted(map(tuple, np.round(world_positions(box), 5)))
+    )
+    ball = sphere_source(levels=4)
+    faces = {}
+    for error in (5.0, 1.0):
+        mesh = made(ball, **patches, patch_error=error).data
+        check_mesh(mesh, 2)
+        faces[error] = len(mesh.polygons)
+        assert not any(polygon.use_smooth for polygon in mesh.polygons)
+        middles = np.array([np.mean([mesh.vertices[v].co for v in face], axis=0) for face in loops(mesh)])
+        assert np.linalg.norm(middles, axis=1).min() > 1 - error / 100 * 2 * 3**0.5
+    assert faces[5.0] < faces[1.0]
+    with pytest.raises(RuntimeError, match="patches are not mirrored"):
+        bpy.ops.saddleback.tessellate(**patches, mirror_x=True)
+
+
 def test_a_mirrored_pattern_has_an_edge_along_the_plane():
     source = sphere_source(levels=4)
     item = made(source, **POLYGONS, mirror_x=True)

@@ -300,6 +300,16 @@ def test_tolerance_ends_it() -> None:
     assert stopped.stop_reason == "max_iterations"
 
 
+def test_as_many_cells_as_parts_are_relaxed() -> None:
+    """A quarter of the cells, and three for each part that is a disk, are no fewer than all: no start to refine."""
+    parts = 96
+    corners = np.tile([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], (parts, 1)) + np.repeat(np.eye(3)[:1], 3 * parts, axis=0)
+    corners[:, 2] = np.repeat(np.arange(parts), 3)
+    mesh = sb.Mesh(corners, np.arange(3 * parts).reshape(-1, 3))
+    found = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh), count=parts)
+    assert sorted(found.sites.faces.tolist()) == list(range(parts))
+
+
 def test_every_part_gets_a_cell() -> None:
     mesh = sb.Mesh(*meshes.two_components())
     graph = sb.SaddleVertexGraph(mesh, k=20)

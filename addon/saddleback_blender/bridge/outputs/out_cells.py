@@ -112,6 +112,8 @@ def _write_surface_polygons(
         compat.copy_auto_smooth(read, mesh)
         materials = shown_materials(source, read) if finish_of(settings.look) is None else []
     write_layers(mesh, carried, corners, counts)
+    if cells.is_patches:
+        compat.shade_flat(mesh)
     if not any(materials):
         compat.write_numbers(mesh.polygons, "material_index", np.zeros(len(counts), np.int32))
         materials = [material_of(settings.look, nodes.cells_material)]

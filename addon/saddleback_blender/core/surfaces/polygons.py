@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from .. import native
 from ..progress import Progress
 from ..results import Indices, SurfacePolygons
+from ..settings import TessellateSettings
 from .corner_places import corner_places
 
 
@@ -19,6 +22,25 @@ def polygons_of(mesh: Any, cells: Any, policy: str, threads: int, progress: Prog
     """
     with progress.stage(0.985, "making polygons of the cells") as job:
         made = cells.polygons(policy.lower(), threads=threads, job=job)
+    return _placed(mesh, made)
+
+
+def patches_of(
+    mesh: Any, settings: TessellateSettings, extent: float, threads: int, progress: Progress
+) -> SurfacePolygons:
+    """The library's patches of its mesh, by an error.
+
+    Raises the library's InputError where the error is too small for the mesh, and its Cancelled.
+    """
+    sharp = {"sharp": settings.sharp_angle} if settings.hold_sharp else {}
+    with progress.stage(0.985, "dividing the surface into patches") as job:
+        made = native.load().super_patches(
+            mesh, error=settings.patch_error / 100 * extent, threads=threads, job=job, **sharp
+        )
+    return replace(_placed(mesh, made.polygons), is_patches=True)
+
+
+def _placed(mesh: Any, made: Any) -> SurfacePolygons:
     faces, barycentric = corner_places(mesh, made.vertices, made.corners, made.offsets)
     return SurfacePolygons(
         vertices=made.vertices,

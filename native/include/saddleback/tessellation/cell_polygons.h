@@ -2,9 +2,12 @@
 // Cells as polygons, one for each, and the quads between cells and their dual.
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "saddleback/mesh/barriers.h"
 #include "saddleback/mesh/surface_curve.h"
 #include "saddleback/tessellation/dual_mesh.h"
 
@@ -15,7 +18,8 @@ struct CellPolygonOptions {
   /// Bounds how far a side leaves the boundary that it stands for, in parts of the size (root of the area) of the
   /// smaller of its cells; where it would be more, the polygon has corners on the way. Infinity: none but those needed.
   double bend = 0.15;
-  int threads = 0;  ///< of repair; the result does not depend on it
+  double tolerance = std::numeric_limits<double>::infinity();  ///< and a length that it is never more than
+  int threads = 0;                                             ///< of repair; the result does not depend on it
 };
 
 /// A polygon for each cell. Neighbors share their corners and sides: a closed surface gives a closed polygon mesh.
@@ -28,6 +32,7 @@ struct CellPolygons {
   std::vector<Index> missing;       ///< cells with an area that are no disks and have no polygon: none after repair
   SurfacePoints sites;              ///< of the cells
   Index added = 0;                  ///< sites that repair added; they come last
+  std::vector<std::uint8_t> is_barrier;  ///< by `corners`: whether the side from there on runs along a barrier
 };
 
 /// Polygons by the cells' corners. Two cells that meet along several boundaries, and cells with fewer than three
@@ -36,6 +41,19 @@ struct CellPolygons {
 /// cell is no disk and the policy is to fail, or repair fails; Cancelled. O((V + F + boundaries) log F).
 CellPolygons cell_polygons(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells,
                            const CellPolygonOptions& options = {}, Job* job = nullptr);
+
+/// Polygons of the whole surface by cells of one that barriers part. Sides run along barriers, straight pieces of them
+/// each one side, and cells on both sides of a barrier share corners and sides there, so nothing is open. Where a
+/// barrier ends within a cell, the cell's boundary is moved to its end, or it becomes two: cells after the last site.
+/// There is no repair: `missing` tells. `split` becomes the whole mesh cut along the cells' boundaries. \throw
+/// InputError as above; for cells that are not the barred mesh's.
+CellPolygons cell_polygons(const Mesh& whole, const BarredMesh& barred, const GeodesicVoronoi& cells,
+                           const CellPolygonOptions& options = {}, SplitMesh* split = nullptr);
+
+/// Cuts the polygons into triangles between their corners, polygon i into offsets[i + 1] - offsets[i] - 2 in their
+/// order: a fan where that has no turned triangle, else as Delaunay's as can be, seen along the polygon's mean normal.
+/// O(n log n) for n corners as a rule.
+std::vector<Triangle> polygon_triangles(const CellPolygons& polygons);
 
 /// Quadrilaterals between sites, boundaries and branch points.
 struct DualQuads {

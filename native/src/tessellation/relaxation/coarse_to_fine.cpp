@@ -87,7 +87,9 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   const Mesh& mesh = graph.mesh();
   // A triangulation of n vertices has 3 n - 3 chi edges.
   const Index coarse = (count + 3 * euler_characteristic(mesh)) / 4;
-  if (coarse < std::max(k_coarsest, mesh.component_count())) return initial_sites(mesh, count, options.density, seed);
+  // Of many parts, each a disk or a sphere, there would be no fewer.
+  if (coarse >= count || coarse < std::max(k_coarsest, mesh.component_count()))
+    return initial_sites(mesh, count, options.density, seed);
   CentroidalVoronoiOptions rough = options;
   rough.constraints.fixed = {};
   rough.start.annealing = 0;
