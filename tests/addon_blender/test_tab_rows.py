@@ -118,6 +118,7 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
             "sites_object",
             "relax_sites",
             "cell_size",
+            "patch_error",
             "rib_width_mm",
             "rib_thickness_mm",
             "base_height_mm",

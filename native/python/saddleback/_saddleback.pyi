@@ -594,7 +594,36 @@ class BarredMesh:
     def polygons(
         self, cells: GeodesicVoronoi, *, bend: SupportsFloat = 0.15, tolerance: SupportsFloat = ...
     ) -> tuple[CellPolygons, SplitMesh]:
-        """x"""
+        """Make a polygon of the whole surface for each cell of the barred one.
+
+        Sides run along the barriers, with a corner wherever those bend, meet or end. Cells on both sides of a barrier share
+        corners and sides there, so polygons of a closed surface are closed. Where a barrier ends within a cell, the cell's
+        boundary is moved to that end, or the cell becomes two: those that it adds come after the last site's.
+
+        Parameters
+        ----------
+        cells : GeodesicVoronoi
+            Of `mesh`.
+        bend : float
+            How far other sides may leave the boundary that they stand for, as for `GeodesicVoronoi.polygons`.
+        tolerance : float
+            A length that it is never more than.
+
+        Returns
+        -------
+        tuple of CellPolygons and SplitMesh
+            The polygons, on `whole`; `missing` names cells that are no disks. And the whole mesh cut along the boundaries of the
+            cells: what each polygon stands for.
+
+        Raises
+        ------
+        InputError
+            Cells of another mesh; a negative bend or tolerance.
+
+        Notes
+        -----
+        O((V + F) log F), and O(F) for each end of a barrier within a cell.
+        """
     def values_to_barred(self, values: ArrayLike) -> _Floats:
         """Bring values of the whole mesh's vertices, as a density, to those of the barred one.
 
@@ -1912,6 +1941,8 @@ class GeodesicVoronoi:
         bend : float
             How far a side may leave the boundary that it stands for, in parts of the size (root of the area) of the smaller of
             its cells; where it would be more, there are corners on the way. inf: none but those needed.
+        tolerance : float
+            A length that it is never more than.
         threads : int
             0: all cores. The result does not depend on it.
         job : Job, optional
@@ -1963,12 +1994,12 @@ class CellPolygons:
         """SurfacePoints: of the cells; those that repair added come last."""
     @property
     def is_barrier(self) -> NDArray[np.bool_]:
-        """(m,) bool"""
+        """(m,) bool: by `corners`, whether the side from there on runs along a barrier."""
     @property
     def added(self) -> int:
         """Number of sites that repair added."""
     def triangles(self) -> _Indices:
-        """x"""
+        """The polygons cut into triangles between their corners, (t, 3) int32: a polygon of n corners into n - 2, in the order of the polygons; a fan where none of its triangles is turned over, else as Delaunay's as can be."""
     def __len__(self) -> int: ...
 
 @final

@@ -231,7 +231,7 @@ class PolygonMaker {
         around = loop(starts[cell][0], barred);
       std::vector<Index> sorted = around;
       std::ranges::sort(sorted);
-      if (around.empty() || std::ranges::adjacent_find(sorted) != sorted.end()) {
+      if (around.size() < 3 || std::ranges::adjacent_find(sorted) != sorted.end()) {
         result_.missing.push_back(cell);
         continue;
       }
