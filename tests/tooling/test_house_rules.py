@@ -150,7 +150,7 @@ SUBFOLDERS = {
     "mesh": ["tables", "cutting", "read", "repair", "soup"],
     "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "power", "cuda"],
     "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],
-    "tessellation": ["bisectors", "log_map", "cells", "relaxation", "baking"],
+    "tessellation": ["bisectors", "log_map", "cells", "relaxation", "polygons", "baking"],
     "field": ["linear", "connection", "smoothing"],
     "distribution": ["check"],
 }

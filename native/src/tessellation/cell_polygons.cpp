@@ -8,7 +8,7 @@
 #include "saddleback/error.h"
 
 #include "mesh/read/triangulate_polygon.h"
-#include "tessellation/cells/parted_surface.h"
+#include "tessellation/polygons/parted_surface.h"
 
 namespace saddleback {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // Boundaries of cells that lead to the ends of barriers.
 
-#include "tessellation/cells/parted_surface.h"
+#include "tessellation/polygons/parted_surface.h"
 
 namespace saddleback {
 

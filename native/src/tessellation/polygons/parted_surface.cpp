@@ -1,4 +1,4 @@
-#include "tessellation/cells/parted_surface.h"
+#include "tessellation/polygons/parted_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "mesh/tables/edge_key.h"
-#include "tessellation/cells/barrier_ends.h"
+#include "tessellation/polygons/barrier_ends.h"
 
 namespace saddleback {
 namespace {

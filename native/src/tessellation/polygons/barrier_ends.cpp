@@ -1,4 +1,4 @@
-#include "tessellation/cells/barrier_ends.h"
+#include "tessellation/polygons/barrier_ends.h"
 
 #include <algorithm>
 #include <map>
