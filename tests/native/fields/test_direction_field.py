@@ -15,6 +15,7 @@ import saddleback as sb
 from tests import meshes
 from tests.native.cancelling import check_progress_and_cancel
 from tests.native.field_indices import euler_characteristic, indices, loop_indices, turns, twins
+from tests.truth.surfaces import rough, sides
 
 Floats = NDArray[np.float64]
 SYMMETRIES = (1, 2, 4)
@@ -481,3 +482,12 @@ def mesh_normals(mesh: sb.Mesh) -> Floats:
     a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
     normals = np.cross(b - a, c - a)
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def test_rounding_does_not_choose_the_field() -> None:
+    """By lengths instead of places all measures differ in their last digits: weights that are equal stay so."""
+    mesh = rough(np.random.default_rng(235))
+    moved = sb.Mesh(mesh.vertices, mesh.triangles, lengths=sides(mesh.vertices, mesh.triangles))
+    one, other = (sb.direction_field(m, 4, strokes=[sb.SurfaceCurve(m, m.edges[0])]) for m in (mesh, moved))
+    assert one.singularities == other.singularities
+    np.testing.assert_allclose(np.remainder(4 * (one.angles - other.angles) + 1, 2 * np.pi), 1, atol=1e-6)

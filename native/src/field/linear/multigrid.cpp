@@ -13,6 +13,7 @@ namespace {
 
 constexpr Index k_coarsest = 120;         // nodes that a dense inverse is cheap for
 constexpr double k_dominant = 10;         // a diagonal larger than this many times its row needs no coarse correction
+constexpr double k_stronger = 1 + 1e-9;   // many are equal but for rounding, which must not say who pairs with whom
 constexpr double k_enough = 0.25;         // the K-cycle's second step is left out when the first one gains this much
 constexpr Index k_nodes_a_check = 32768;  // about a millisecond between looks at the job
 
@@ -51,8 +52,8 @@ Aggregates<Scalar> pair_up(const GraphMatrix<Scalar>& matrix, const JobStage& st
     for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
       const Index state = result.of[matrix.columns[k]];
       const double strength = std::abs(matrix.values[k]);
-      if (state == k_free && (free == k_none || strength > std::abs(matrix.values[free]))) free = k;
-      if (state >= 0 && (joined == k_none || strength > std::abs(matrix.values[joined]))) joined = k;
+      if (state == k_free && (free == k_none || strength > k_stronger * std::abs(matrix.values[free]))) free = k;
+      if (state >= 0 && (joined == k_none || strength > k_stronger * std::abs(matrix.values[joined]))) joined = k;
     }
     if (free != k_none && !needs_no_correction(matrix, matrix.columns[free])) {
       const Index j = matrix.columns[free];
