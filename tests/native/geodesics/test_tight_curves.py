@@ -99,6 +99,13 @@ def test_a_way_through_the_tip_of_a_cone_slips_off(arrays: meshes.Arrays, walk: 
     assert tight.length == pytest.approx(length, abs=1e-14)
 
 
+def test_a_ring_through_the_tips_of_two_cones_slips_off() -> None:
+    """Straight in its strip, it lies doubled between the two, about each of which there is no more than pi."""
+    walk = [3, 1, 3, 0, 3, 2, 1, 3, 1, 2, 3, 0, 3, 1]
+    tight = sb.shorten_curve(sb.SurfaceCurve(sb.Mesh(*meshes.tetrahedron()), walk, closed=True))
+    assert tight.length == 0
+
+
 @pytest.mark.parametrize("turns", [1, 2, -3])
 def test_a_helix_is_the_straight_line_of_the_unrolled_tube(turns: int) -> None:
     """A prism unrolls to a strip, on which a curve that winds so many times is a line to one point of many."""

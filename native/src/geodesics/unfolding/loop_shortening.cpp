@@ -77,7 +77,7 @@ LoopShortener::Result LoopShortener::begin(std::vector<Index>& strip, LegChain& 
 
 LoopShortener::Turn LoopShortener::turn_of(std::span<const Index> strip) {
   length_from(strip, 0.5);
-  if (is_straight(strip, 0.5)) return {};
+  if (is_straight(strip, 0.5)) return cone_on(strip, 0.5);
   // The length is convex in the share: golden sections.
   constexpr double k_golden = 0.61803398874989485;
   constexpr int k_sections = 48;
@@ -103,7 +103,7 @@ LoopShortener::Turn LoopShortener::turn_of(std::span<const Index> strip) {
     return {at_from <= at_to ? mesh_.from(strip[0]) : mesh_.to(strip[0]), 0};
   }
   if (trial_.leg_count > 1) return {trial_.ends[1].vertex, 1 + trial_.legs[0].entered.size()};
-  if (is_straight(strip, share)) return {};
+  if (is_straight(strip, share)) return cone_on(strip, share);
   return nearest(strip, share);
 }
 
@@ -135,12 +135,19 @@ bool LoopShortener::is_straight(std::span<const Index> strip, double share) cons
   return std::abs(leaves - arrives) <= k_straight;
 }
 
+/// Returns the tip of a cone that trial_, which is straight, runs through; none where it is tight.
+LoopShortener::Turn LoopShortener::cone_on(std::span<const Index> strip, double share) const {
+  for (std::size_t i = 0; i < strip.size(); ++i)
+    if (const Index vertex = cone_met(mesh_, strip[i], crossing(i, share)); vertex != k_none) return {vertex, i};
+  return {};
+}
+
 /// Returns the vertex beside the strip that trial_ passes at the least distance along an edge.
 LoopShortener::Turn LoopShortener::nearest(std::span<const Index> strip, double share) const {
   Turn found;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < strip.size(); ++i) {
-    const double at = i == 0 ? share : trial_.legs[0].crossings[i - 1], length = mesh_.length(strip[i]);
+    const double at = crossing(i, share), length = mesh_.length(strip[i]);
     if (std::min(at, 1 - at) * length >= least) continue;
     least = std::min(at, 1 - at) * length;
     found = {at < 0.5 ? mesh_.from(strip[i]) : mesh_.to(strip[i]), i};

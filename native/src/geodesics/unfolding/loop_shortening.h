@@ -38,7 +38,10 @@ class LoopShortener {
   Turn turn_of(std::span<const Index> strip);
   double length_from(std::span<const Index> strip, double share);
   bool is_straight(std::span<const Index> strip, double share) const;
+  Turn cone_on(std::span<const Index> strip, double share) const;
   Turn nearest(std::span<const Index> strip, double share) const;
+  /// Returns where trial_ crosses the i-th edge.
+  double crossing(std::size_t i, double share) const { return i == 0 ? share : trial_.legs[0].crossings[i - 1]; }
   Result free_begin(LegChain& loop);
   void close(std::vector<Index>& strip) const;
 

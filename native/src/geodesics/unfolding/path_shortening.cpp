@@ -14,8 +14,8 @@ constexpr double k_straight = 1e-10;
 // Of an edge: a leg that crosses it nearer to its end than that runs through the vertex.
 constexpr double k_through = 1e-10;
 
-/// The vertex that a leg runs through where it crosses a half-edge, if it is the tip of a cone: straight on one side,
-/// the leg is bent on the other.
+}  // namespace
+
 Index cone_met(const Mesh& mesh, Index entered, double crossing) {
   const bool at_from = crossing <= k_through;
   if (!at_from && crossing < 1 - k_through) return k_none;
@@ -23,8 +23,6 @@ Index cone_met(const Mesh& mesh, Index entered, double crossing) {
   const bool is_cone = mesh.total_angle(vertex) < 2 * std::numbers::pi - k_straight;
   return is_cone && !mesh.is_boundary(vertex) ? vertex : k_none;
 }
-
-}  // namespace
 
 void LegChain::clear() {
   ends.clear();

@@ -20,6 +20,10 @@ struct LegChain {
   double length() const;
 };
 
+/// The vertex that a leg runs through where it crosses a half-edge, if it is the tip of a cone: straight on one side,
+/// the leg is bent on the other. Else k_none.
+Index cone_met(const Mesh& mesh, Index entered, double crossing);
+
 /// Moves a chain to the other side of vertices that it passes with less than pi on one side, until there are none: each
 /// time the faces about the vertex on that side join the faces before and after it to one strip, whose shortest path
 /// replaces the two pieces (as the edge flips of [sharp2020], but without a mesh to flip). Never longer; ends because
