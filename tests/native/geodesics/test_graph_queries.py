@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import saddleback as sb
 from tests import meshes
 from tests.native.exact import random_points
-from tests.truth.families import delaunay, square
+from tests.truth.families import delaunay, square, two_lines
 from tests.truth.graph import shortness
 
 Floats = NDArray[np.float64]
@@ -429,6 +429,17 @@ def test_curves_against_points_all_along_them(case: meshes.Case) -> None:
     assert (found + gap / 2 >= exact * (1 - ROUNDING) - 1e-9).all()
     if case.name != "needles":
         assert (found <= exact * 1.02 + 1e-9).all()
+
+
+@pytest.mark.parametrize("seed", [7, 8, 82, 109, 141, 150, 194, 231])
+def test_curves_beside_long_and_short_edges_keep_to_the_accuracy(seed: int) -> None:
+    """From the border of a square whose vertices lie on two near lines, by faces as long as they are thin."""
+    mesh = sb.Mesh(*two_lines(np.random.default_rng(seed)))
+    border = sb.SurfaceCurve(mesh, mesh.boundary_loops[0], closed=True)
+    expected = np.minimum(mesh.vertices[:, :2], 1 - mesh.vertices[:, :2]).min(axis=1)
+    for accuracy in (5e-3, 2e-2):
+        found = sb.SaddleVertexGraph(mesh, accuracy=accuracy).distances(border)
+        np.testing.assert_allclose(found, expected, rtol=accuracy, atol=1e-12)
 
 
 def test_a_very_short_curve_is_a_point() -> None:

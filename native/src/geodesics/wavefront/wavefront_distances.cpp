@@ -217,10 +217,16 @@ bool WavefrontDistances::is_too_far(const RayWindow& window, double key) {
   return std::isfinite(limits_.edges) && key > limits_.edges * longest_to_apex(window.halfedge);
 }
 
-/// The longest edge on the way through a half-edge to the vertex opposite, for which it is kept.
+/// The longest edge on the way through a half-edge to the vertex opposite, for which it is kept. For corners of the
+/// face where the way sets out nothing is kept: that face speaks for them.
 double WavefrontDistances::longest_to_apex(Index h) {
-  const double longest = std::max({mesh_.length(h), mesh_.length(Mesh::next(h)), mesh_.length(Mesh::prev(h)),
-                                   std::min(longest_[mesh_.from(h)], longest_[mesh_.to(h)])});
+  const auto longest_at = [&](Index g) {
+    return std::max({mesh_.length(g), mesh_.length(Mesh::next(g)), mesh_.length(Mesh::prev(g))});
+  };
+  const auto longest_to = [&](Index v) {
+    return longest_[v] > 0 || mesh_.twin(h) == k_none ? longest_[v] : longest_at(mesh_.twin(h));
+  };
+  const double longest = std::max(longest_at(h), std::min(longest_to(mesh_.from(h)), longest_to(mesh_.to(h))));
   double& kept = longest_[mesh_.apex(h)];
   if (kept == 0) with_longest_.push_back(mesh_.apex(h));
   if (kept == 0 || longest < kept) kept = longest;
