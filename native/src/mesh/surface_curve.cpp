@@ -96,10 +96,14 @@ void SurfaceCurve::add_segment(std::size_t from, std::size_t to, const char* arg
   }
   CurveSegment segment{face, *barycentric_in(*mesh_, a, face, k_barycentric_tolerance),
                        *barycentric_in(*mesh_, b, face, k_barycentric_tolerance), length_, 0};
-  // By what the coordinates differ: places far from the origin are rounded, and one place would be two.
+  // By what the coordinates differ: places far from the origin are rounded, and one place would be two. Seen from where
+  // they differ most no more is added than remains, also along a needle's short side.
   const Vec3 change = segment.end - segment.begin;
   const std::array<Vec3, 3> corner = mesh_->corners(3 * face);
-  segment.length = (change[1] * (corner[1] - corner[0]) + change[2] * (corner[2] - corner[0])).norm();
+  Index most = 0;
+  change.cwiseAbs().maxCoeff(&most);
+  const auto leads = [&](Index i) { return Vec3(change[i] * (corner[i] - corner[most])); };
+  segment.length = (leads((most + 1) % 3) + leads((most + 2) % 3)).norm();
   const Index h = 3 * face;
   const double longest = std::max({mesh_->length(h), mesh_->length(h + 1), mesh_->length(h + 2)});
   if (segment.length <= k_no_length * longest) return;

@@ -31,6 +31,15 @@ def test_boundary_loops_are_closed_curves(case: meshes.Case) -> None:
         assert curve.length == pytest.approx(np.linalg.norm(ring - np.roll(ring, -1, axis=0), axis=1).sum(), rel=1e-12)
 
 
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_short_sides_of_needles_are_as_long_as_they_are(first: int) -> None:
+    corners = np.roll([(-0.3, -0.2, 0.4), (-0.3 + 3e-8, -0.2 - 1e-8, 0.4 + 2e-8), (0.2, 0.3, 0.5)], first, axis=0)
+    mesh = sb.Mesh(corners, [(0, 1, 2)])
+    for edge in ((0, 1), (1, 2), (2, 0)):
+        length = np.linalg.norm(corners[edge[1]] - corners[edge[0]])
+        assert sb.SurfaceCurve(mesh, edge).length == pytest.approx(length, rel=1e-15, abs=0)
+
+
 def test_points_of_a_shared_edge_or_vertex_need_not_be_given_in_the_same_face() -> None:
     mesh = sb.Mesh(*meshes.grid(4, 4))
     face = mesh.triangles.tolist()
