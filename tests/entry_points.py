@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import dataclasses
 import fnmatch
 import functools
 import io
@@ -105,6 +106,10 @@ class Inputs:
     @functools.cached_property
     def chart(self) -> sb.Chart:
         return sb.Chart(self.disk, self.uv)
+
+    @functools.cached_property
+    def patches(self) -> sb.SuperPatches:
+        return sb.super_patches(self.mesh, 60, threads=2)
 
     @functools.cached_property
     def cells(self) -> sb.GeodesicVoronoi:
@@ -372,6 +377,8 @@ def calls(at: Inputs) -> dict[str, Call]:
         "map_shapes": lambda **more: sb.map_shapes(at.mesh, at.star, at.laid.placements, **more),
         "plot": lambda: if_installed(lambda: sb.plot(quality)),
         "polar_coordinates": lambda: sb.polar_coordinates(at.graph, at.curve, 0.5),
+        "SuperPatches": lambda: dataclasses.replace(at.patches, triangles=at.patches.triangles[:1]),
+        "SuperPatches.hausdorff": lambda: at.patches.hausdorff(at.mesh, 1e-2),
         "super_patches": lambda **more: sb.super_patches(at.mesh, 60, **more),
         "stroke_map": lambda: sb.stroke_map(at.mesh, at.curve, 0.5),
         "principal_curvatures": lambda: sb.principal_curvatures(at.mesh),
