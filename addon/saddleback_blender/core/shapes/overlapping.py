@@ -155,7 +155,9 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
     while len(pairs):
         chosen = _fewest(pairs, factor)
         times[chosen] += 1
-        factor[chosen] *= CLEARER ** np.maximum(times[chosen] - GENTLY + 1, 1)
+        smaller = factor[chosen] * CLEARER ** np.maximum(times[chosen] - GENTLY + 1, 1)
+        last = LEAST / CLEARER  # none is left out that was not tried at this
+        factor[chosen] = np.where(factor[chosen] > last, np.maximum(smaller, last), smaller)
         pairs = pairs[~np.isin(pairs, chosen).any(axis=1)]
         is_kept = ~np.isin(owner, chosen)
         triangles, owner = triangles[is_kept], owner[is_kept]
