@@ -156,7 +156,7 @@ class Walk {
     return step;
   }
 
-  /// Which of the face's corners is singular and next to the place; k_none: none of them.
+  /// Returns which of the face's corners is singular and next to the place; k_none: none of them.
   int corner_reached() const {
     if (!singular_) return k_none;
     for (int i = 0; i < 3; ++i) {

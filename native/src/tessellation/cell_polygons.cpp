@@ -88,7 +88,7 @@ class PolygonMaker {
   bool is_line(Index h) const {
     return surface_.lines[h] != PartedSurface::none || twins_[h] == k_none || cell_of(twins_[h]) != cell_of(h);
   }
-  /// Where lines meet or end, or where a barrier goes on as another line.
+  /// Tells whether lines meet or end there, or a barrier goes on as another line.
   bool is_corner(Index vertex) const { return degree_[vertex] > 2 || barriers_[vertex] == 1; }
   /// The next half-edge around the same cell.
   Index onward(Index h) const {

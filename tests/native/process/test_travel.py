@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import inspect
 import multiprocessing
 import pickle
@@ -108,7 +109,7 @@ STAYS = {
     "SweepCircles": lambda: sb.SweepCircles([(0.0, 0.0), (1.0, 0.5)], [(0.5, 0.5)]),
 }
 ON_A_DEVICE = {"DeviceArray", "DeviceVoronoi2d"}  # tests/parity
-OF_PYTHON = {"DensityMatch", "Device"}  # made of Python's own
+OF_PYTHON = {"DensityMatch", "Device", "SuperPatches"}  # made of Python's own
 
 
 def properties(value: Any) -> dict[str, Any]:
@@ -166,6 +167,10 @@ def test_what_stays_says_what_to_do(name: str) -> None:
 def test_what_python_made_travels() -> None:
     for value in (sb.devices()[0], sb.DensityMatch(0.5, np.ones(3), np.ones(3, np.int64))):
         assert repr(pickle.loads(pickle.dumps(value))) == repr(value)
+    patches = sb.super_patches(sb.Mesh(*meshes.cube()), error=0.01)
+    again = pickle.loads(pickle.dumps(patches))
+    for field in dataclasses.fields(patches):
+        assert np.all(getattr(again, field.name) == getattr(patches, field.name)), field.name
 
 
 def test_out_of_band_buffers_are_not_copied_into_the_pickle() -> None:

@@ -24,7 +24,7 @@ constexpr double k_share_of_accuracy = 0.25;
 constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
 constexpr double k_vertices_a_segment = 1;  ///< at least so many take as long, also where a curve runs along itself
 
-/// In edges; of an exact graph distances from curves are exact.
+/// Returns the width in edges; of an exact graph distances from curves are exact.
 double strip_width(const SaddleVertexGraph& graph) {
   if (graph.is_exact()) return std::numeric_limits<double>::infinity();
   const double accuracy = graph.accuracy();

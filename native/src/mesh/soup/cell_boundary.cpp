@@ -150,7 +150,7 @@ class BoundarySearch {
     return boundary_.cells[segment][0] == cell || boundary_.cells[segment][1] == cell;
   }
 
-  /// Whether a vertex lies on the boundary; those that were added do not.
+  /// Tells whether a vertex lies on the boundary; those that were added do not.
   bool touches(Index vertex) const {
     return vertex < static_cast<Index>(vertices_.size()) && first_[vertex] < first_[vertex + 1];
   }

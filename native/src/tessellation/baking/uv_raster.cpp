@@ -17,8 +17,8 @@ constexpr double k_touching = 0.01;
 // Of the square of the longest edge: less area than this is rounding.
 constexpr double k_no_area = 1e-12;
 
-/// Where the edge crosses the middle of a row, the same from both its sides; none where it does not. The upper end of
-/// an edge belongs to the next one.
+/// Returns where the edge crosses the middle of a row, the same from both its sides; none where it does not. The upper
+/// end of an edge belongs to the next one.
 std::optional<double> crossing(Vec2 a, Vec2 b, double y) {
   if (std::pair(b.y(), b.x()) < std::pair(a.y(), a.x())) std::swap(a, b);
   if (y < a.y() || y >= b.y()) return std::nullopt;
