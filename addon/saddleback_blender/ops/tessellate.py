@@ -146,6 +146,8 @@ class CellsOperator(SurfaceOperator):
         settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
         follower = self.follower(context, source)
+        if settings.make_centers or settings.make_shell or (settings.make_cells and settings.thickness):
+            follower.read()
         aside = "HIDE" if self._is_by_hand else ""
         surface = output_surface(context, source, settings.use_modifiers, aside, follower)
         values: dict[str, np.ndarray[Any, Any]] = {

@@ -54,6 +54,10 @@ class Follower:
     def _ground(self) -> Ground:
         return Ground(self._surface, mesh_of_surface(self._surface, runs.new_progress(), cache.shared))
 
+    def read(self) -> None:
+        """Reads what outputs that stand off the surface, or are turned, need; before the first of several is made."""
+        _ = self._rest, self._normals
+
     def take(
         self,
         item: bpy.types.Object,
@@ -79,8 +83,6 @@ class Follower:
         self, item: bpy.types.Object, place: Matrix, anchors: Anchors, rotations: Reals | None = None
     ) -> None:
         """Does the same where it is known where the points stand."""
-        # All that is read, before anything is written: Blender would evaluate what was made so far each time.
-        rest, _ = self._rest, self._normals
         extent = float(np.ptp(self._surface.vertices, axis=0).max())
         is_shifted = bool(np.abs(anchors.offset).max(initial=0.0) > ON_SURFACE * extent)
         vectors = {SHIFT_ATTRIBUTE: anchors.offset} if is_shifted else {}
@@ -88,19 +90,20 @@ class Follower:
             turn = np.array(place.to_3x3(), np.float64)
             for name, axis in zip((X_ATTRIBUTE, Z_ATTRIBUTE), axes_of(rotations), strict=True):
                 vectors[name] = axis @ turn.T
+        # All that is read, before anything is written: Blender would evaluate what was made so far each time.
+        rest, frames = self._rest, self._frames(anchors) if vectors else None
         _remove_keeper(self._source, item)
         keeper = _new_keeper(self._source, item, len(anchors.corners)) if item.type == "CURVE" else None
-        self._write(item.data if keeper is None else keeper.data, anchors, vectors)
+        self._write(item.data if keeper is None else keeper.data, anchors, vectors, frames)
         known = Known(is_shifted, rotations is not None, keeper)
         set_following(item, Host.of(self._source, place, self._surface.vertex_count, rest.otherwise), known)
 
-    def _write(self, mesh: bpy.types.Mesh, anchors: Anchors, vectors: dict[str, Reals]) -> None:
+    def _write(self, mesh: bpy.types.Mesh, anchors: Anchors, vectors: dict[str, Reals], frames: Reals | None) -> None:
         """Gives a mesh's vertices what the node group asks for: where they stand, and vectors as seen from there."""
         for i, name in enumerate(CORNER_ATTRIBUTES):
             set_attribute(mesh, name, "POINT", np.ascontiguousarray(anchors.corners[:, i]))
         set_attribute(mesh, WEIGHTS_ATTRIBUTE, "POINT", anchors.barycentric)
-        if vectors:
-            frames = self._frames(anchors)
+        if frames is not None:
             for name, values in vectors.items():
                 set_attribute(mesh, name, "POINT", in_frames(frames, values))
         if self._rest.places is not None and self._rest.otherwise == BY_PLACE:
