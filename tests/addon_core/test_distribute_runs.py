@@ -181,6 +181,16 @@ def test_filling_is_proved():
     assert len(packed.placed.shape) > len(result.placed.shape)
 
 
+@pytest.mark.parametrize("size", [0.25, 0.0])
+def test_filling_keeps_to_where_the_density_is_painted(size):
+    density = np.maximum(0.0, BALL[0][:, 2])
+    result = run(preset("STUDS"), size=size, maximal=True, options={"density": density})
+    assert any(line.startswith("Proved full") for line in result.lines)
+    heights = result.placed.points[:, 2]
+    assert heights.min() > -0.15 and (heights < 0.25).sum() > 5  # down to the rim, where the density is low
+    assert len(heights) > 10 if size else abs(len(heights) - 60) <= 3
+
+
 def test_counts_that_do_not_fit_are_told():
     result = run(preset("STUDS"), size=0.3, count=500)
     assert len(result.placed.shape) < 100 and "no more room" in result.text

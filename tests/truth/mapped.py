@@ -360,7 +360,7 @@ def laid_copies(rng: Random) -> None:
 @guards("Certificate", "distribute", on="nothing")
 def nothing_more_fits(rng: Random) -> None:
     """Where a certificate says that nothing more fits, copies laid at random come nearer than its tolerance to others,
-    or to the border.
+    or to the border, wherever their density is positive; and none lies where it is 0.
     """
     surface = Unrolled(rng, 1.0, 1.0)
     if np.ptp(surface.mesh.vertices[:, 2]) > 0:
@@ -371,7 +371,21 @@ def nothing_more_fits(rng: Random) -> None:
     shapes = [sb.Shape(regular(int(rng.integers(3, 7)), 1.0)) for _ in range(int(rng.integers(1, 3)))]
     sizes, turns = rng.uniform(0.1, 0.3, len(shapes)), rng.uniform(0, 7, len(shapes))
     fields = [field.turned(float(turn)) for turn in turns]
-    laid = sb.distribute(surface.mesh, shapes, None, fields, size=sizes, maximal=True, tolerance=0.05, threads=1)
+    density = None
+    if rng.random() < 0.5:
+        density = rng.random((len(shapes), surface.mesh.vertex_count)) * (rng.random(surface.mesh.vertex_count) < 0.3)
+        density[:, int(rng.integers(surface.mesh.vertex_count))] = 1
+    laid = sb.distribute(
+        surface.mesh, shapes, None, fields, density, size=sizes, maximal=True, tolerance=0.05, threads=1
+    )
+
+    def wanted(which: int, points: sb.SurfacePoints, i: int) -> bool:
+        if density is None:
+            return True
+        corners = surface.mesh.triangles[points.faces[i]]
+        return bool(density[which][corners] @ points.barycentric[i] > 0)
+
+    assert all(wanted(int(which), laid.placements.center, i) for i, which in enumerate(laid.placements.shape))
     proof = laid.certificate
     assert proof is not None
     assert proof.leaves <= proof.cells
@@ -384,6 +398,8 @@ def nothing_more_fits(rng: Random) -> None:
     others = np.array([center for _, center, *_ in layout.poses])
     for center in rng.random((60, 2)):
         which = int(rng.integers(len(shapes)))
+        if not wanted(which, sb.project(surface.mesh, [[*center, 0.0]]), 0):
+            continue
         angle = heading + turns[which]
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         tried = center + sizes[which] * shapes[which].loops[0] @ turn

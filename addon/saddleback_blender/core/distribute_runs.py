@@ -38,7 +38,7 @@ from .shapes.bent_copies import bent_copies
 from .shapes.cut_shapes import cut_shapes
 from .shapes.overlapping import ROUND, THIN, Order, Whole, footprints, map_whole, tilted, tilted_frames
 from .shapes.shape_classes import class_densities, class_fields, class_sizes, kept_placements
-from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
+from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, painted_share, room, size_of, sizes
 from .shapes.shape_templates import ShapeTemplate, sized, uv_of_classes
 from .surfaces.local_frames import anchored
 
@@ -158,10 +158,10 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         "seed": settings.seed,
         "shares": None if settings.maximal else [template.share for template in templates],
     }
-    if densities is not None and settings.maximal and not settings.size_by_density:
-        progress.note("Where shapes fill the surface the density has no say in their number; let it rule their size")
-    elif densities is not None and not (settings.size_by_density and (settings.maximal or settings.packing > 0)):
+    if densities is not None and not (settings.size_by_density and (settings.maximal or settings.packing > 0)):
         options["density"] = densities  # where shapes fill the surface their sizes alone say how many there are
+    if "density" in options and settings.maximal:
+        progress.note("Where shapes fill the surface the density says where, not how many; let it rule their size")
     if forbidden is not None:
         options["forbidden"] = forbidden
     field_key = [(own.angles, own.symmetry) for own in _listed(fields)]
@@ -195,7 +195,9 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         placed = place(settings.size, None if settings.maximal else settings.count)
     else:
         free = mesh.area if forbidden is None else float(np.asarray(mesh.face_areas)[~forbidden].sum()) or mesh.area
-        if "density" in options and not settings.size_by_density:
+        if "density" in options and settings.maximal:
+            free *= max(painted_share(mesh, own) for own in _listed(options["density"]))
+        elif "density" in options and not settings.size_by_density:
             free /= max(crowding(mesh, own) for own in _listed(options["density"]))
         first = size_of(settings.count, settings.packing if fills else 0.0, fills, free, shapes, templates)
         placed = fitted_to_count(place, first, settings.count, fills, settings.maximal)

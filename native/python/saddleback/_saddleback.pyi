@@ -4560,14 +4560,16 @@ def distribute(
         counts: None: as many as find room; or one integer a shape (one for all where there is one shape, or with shares).
         field: DirectionField of the mesh: x axes of the shapes point along one of its directions, chosen at random among those
             that make a difference; or a sequence of them, one a shape. None: the smoothest field of lines.
-        density: (V,) wanted number of copies per area, only ratios matter; needs counts. Or one such array a shape, as (n, V)
-            or a sequence: each shape then follows its own.
+        density: (V,) wanted number of copies per area, only ratios matter; needs counts or maximal. Or one such array a shape, as
+            (n, V) or a sequence: each shape then follows its own.
         size: scale of the shapes, mesh units for one unit of their planes: a number, or (V,); or one a shape: (n,), (n, V) or a
             sequence of numbers and arrays. What is as long as there are vertices is one a vertex.
         seed: integer >= 0.
         mode: "random", or "packed": one beside the other in a front that sweeps over the surface, denser by a quarter and more;
             or a number from 0 (random) to 1 (packed).
-        maximal: go on until nothing more fits, and prove it: `result.certificate`.
+        maximal: go on until nothing more fits, and prove it: `result.certificate`. Of a density only where it is positive, and none
+            is centered where it is 0. It says which places, and of several classes which class (each by its density's share of
+            its own mean there), are tried first; what lies there in the end is full, so for numbers per area use sizes (V,).
         shares: one number a shape, its share of the copies, only ratios matter; kept to a hundredth and one copy even where
             room runs out: where one class finds no more, the others stop as well. With a density those of the counts. None:
             counts alone, or whatever finds room.
@@ -4594,8 +4596,8 @@ def distribute(
             negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field
             or with maximal;
             sizes or density of the wrong length, not finite or not positive; fields, sizes or densities of another number
-            than shapes; copies around which to lay that meet each other or do not fit where they are; density zero everywhere, without counts or with
-            maximal; a copy larger than the surface, alone or with half of the gap around; everything forbidden.
+            than shapes; copies around which to lay that meet each other or do not fit where they are; density zero everywhere,
+            or without counts or maximal; a copy larger than the surface, alone or with half of the gap around; everything forbidden.
         Cancelled: the job was.
 
     Notes:

@@ -11,6 +11,7 @@
 #include "saddleback/mesh/trace.h"
 #include "saddleback/support/one_or_each.h"
 
+#include "distribution/class_densities.h"
 #include "distribution/even_places.h"
 #include "distribution/insertion.h"
 #include "distribution/maximal_sampling.h"
@@ -22,6 +23,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_field_share = 0.3;  ///< of the work, where the field is to be made as well
+constexpr double k_even_share = 0.3;   ///< of the rest, where what is missing to the counts is looked for after it
 
 using namespace distribution;
 
@@ -117,9 +119,8 @@ void check_density(const Mesh& mesh, std::span<const Shape> shapes, const Distri
     if (std::all_of(density.begin(), density.end(), [](double v) { return v == 0; }))
       throw InputError(message(name, " is zero everywhere: no place is left for a shape"));
   });
-  if (options.counts.empty()) throw InputError("density: tells where, but counts must tell how many");
-  if (options.maximal)
-    throw InputError("density: a surface that is full everywhere cannot follow it; let size follow it instead");
+  if (options.counts.empty() && !options.maximal)
+    throw InputError("density: tells where, but counts must tell how many, or maximal that all that fit are wanted");
 }
 
 void check_fields(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
@@ -197,13 +198,9 @@ std::vector<Index> interleaved(const std::vector<Index>& counts) {
 /// Places copies so that they follow a density evenly.
 class DensityFollower {
  public:
-  DensityFollower(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion, const DistributionOptions& options)
-      : mesh_(mesh), rules_(rules), insertion_(insertion), options_(options) {
-    masses_.resize(options.density.size(), 0);
-    for (std::size_t i = 0; i < masses_.size(); ++i)
-      for (Index f = 0; f < mesh.face_count(); ++f)
-        masses_[i] += mesh.face_area(f) * density_at(options.density[i], f, Vec3::Constant(1.0 / 3));
-  }
+  DensityFollower(const Mesh& mesh, const ClassDensities& densities, const PlacingRules& rules, Insertion& insertion,
+                  const DistributionOptions& options)
+      : mesh_(mesh), densities_(densities), rules_(rules), insertion_(insertion), options_(options) {}
 
   /// Every copy has a place of its own; one that finds no room there tries farther and farther about it.
   DistributionStop run(const JobStage& stage) {
@@ -238,20 +235,16 @@ class DensityFollower {
     }
   }
 
-  double density_at(const std::vector<double>& density, Index face, const Vec3& weights) const {
-    const Triangle& t = mesh_.triangles()[face];
-    return density[t[0]] * weights[0] + density[t[1]] * weights[1] + density[t[2]] * weights[2];
-  }
-
   /// The area that a copy has at a place where the densities are met.
   double room_at(const SurfacePoint& place) const {
+    const std::vector<double>& masses = densities_.masses();
     const auto room = [&](std::size_t i, double count) {
-      const double density = density_at(options_.density[i], place.face, place.barycentric);
-      return masses_[i] / count / std::max(density, 1e-9 * masses_[i]);
+      const double density = densities_.of_list(i, place.face, place.barycentric);
+      return masses[i] / count / std::max(density, 1e-9 * masses[i]);
     };
-    if (masses_.size() == 1) return room(0, static_cast<double>(turns_.size()));
+    if (masses.size() == 1) return room(0, static_cast<double>(turns_.size()));
     double copies = 0;
-    for (std::size_t i = 0; i < masses_.size(); ++i)
+    for (std::size_t i = 0; i < masses.size(); ++i)
       if (options_.counts[i] > 0) copies += 1 / room(i, options_.counts[i]);
     return 1 / copies;
   }
@@ -264,8 +257,7 @@ class DensityFollower {
       const double apart = std::sqrt(room_at(place));
       const double length = spread * std::min(apart, std::sqrt(mesh_.area())) * std::sqrt(uniform(key, 3));
       const SurfacePoint moved = trace_end(mesh_, place, 2 * std::numbers::pi * uniform(key, 4), length).point;
-      const auto& density = one_or_each(options_.density, turns_[which]);
-      if (density_at(density, moved.face, moved.barycentric) > 0) place = moved;
+      if (densities_.at(turns_[which], moved) > 0) place = moved;
     }
     std::vector<Index> kinds;
     for (Index k = 0; k < static_cast<Index>(rules_.kinds().size()); ++k)
@@ -276,11 +268,11 @@ class DensityFollower {
   }
 
   const Mesh& mesh_;
+  const ClassDensities& densities_;
   const PlacingRules& rules_;
   Insertion& insertion_;
   const DistributionOptions& options_;
-  std::vector<double> masses_;  ///< integrals of the densities
-  std::vector<Index> turns_;    ///< the shape of each copy
+  std::vector<Index> turns_;  ///< the shape of each copy
   SurfacePoints places_;
 };
 
@@ -320,12 +312,16 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   Insertion insertion(mesh, rules, options);
   if (!options.around.empty()) lay_around(mesh, shapes, options, insertion, laid.part(0.05, 0.1));
   DistributionResult result;
-  if (!options.density.empty()) {
-    result.stop =
-        DensityFollower(mesh, rules, insertion, options).run(laid.part(options.around.empty() ? 0.05 : 0.1, 1));
-  } else {
-    MaximalSampling search(mesh, rules, insertion, options);
-    result.stop = search.run(laid.part(options.around.empty() ? 0.05 : 0.1, 1));
+  const ClassDensities densities(mesh, options.density);
+  JobStage rest = laid.part(options.around.empty() ? 0.05 : 0.1, 1);
+  if (!densities.is_even() && !options.counts.empty()) {
+    const double share = options.maximal ? k_even_share : 1;
+    result.stop = DensityFollower(mesh, densities, rules, insertion, options).run(rest.part(0, share));
+    rest = rest.part(share, 1);
+  }
+  if (densities.is_even() || options.maximal) {
+    MaximalSampling search(mesh, densities, rules, insertion, options);
+    result.stop = search.run(rest);
     if (options.maximal) result.certificate = search.certificate();
   }
   for (const Copy& copy : insertion.settled().copies()) result.placements.push_back(copy.placement);

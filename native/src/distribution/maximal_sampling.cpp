@@ -63,9 +63,9 @@ Eigen::Matrix2d turn_of(const Copy& copy) {
 
 }  // namespace
 
-MaximalSampling::MaximalSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion,
-                                 const DistributionOptions& options)
-    : mesh_(&mesh), rules_(&rules), insertion_(&insertion), options_(&options) {
+MaximalSampling::MaximalSampling(const Mesh& mesh, const ClassDensities& densities, const PlacingRules& rules,
+                                 Insertion& insertion, const DistributionOptions& options)
+    : mesh_(&mesh), densities_(&densities), rules_(&rules), insertion_(&insertion), options_(&options) {
   if (options.packing > 0) front_ = sweep_coordinate(mesh);
   if (options.maximal)
     certificate_.tolerance = options.tolerance * (rules.radius_of_smallest_copies() + 0.5 * options.gap);
@@ -100,17 +100,26 @@ void MaximalSampling::flag_borders() {
   }
 }
 
+/// Returns the kinds that may be centered in a face.
+std::uint64_t MaximalSampling::kinds_in(Index face) const {
+  if (!options_->forbidden.empty() && options_->forbidden[face]) return 0;
+  std::uint64_t kinds = 0;
+  for (std::size_t k = 0; k < rules_->kinds().size(); ++k)
+    if (densities_->most_relative(rules_->kinds()[k].shape, face) > 0) kinds |= std::uint64_t{1} << k;
+  return kinds;
+}
+
 /// Returns the radius of the base cells: larger cells are hardly ever covered as a whole.
 double MaximalSampling::base_radius() const { return 0.5 * rules_->smallest_radius(); }
 
 /// Makes the base cells of the next faces, as many as are looked at together.
 void MaximalSampling::make_base_cells(const JobStage& stage) {
-  const std::size_t count = rules_->kinds().size();
-  const std::uint64_t all = count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
   while (next_face_ < mesh_->face_count() && open_.size() < k_most_cells) {
     stage.check();
     const Index f = next_face_++;
-    if (!options_->forbidden.empty() && options_->forbidden[f]) continue;
+    const std::uint64_t kinds = kinds_in(f);
+    if (!kinds) continue;
+    searched_area_ += mesh_->face_area(f);
     const double edge = std::max({mesh_->length(3 * f), mesh_->length(3 * f + 1), mesh_->length(3 * f + 2)});
     int level = 0;
     // Similar triangles of a needle would be as many as its length asks for, with hardly any area each.
@@ -122,8 +131,8 @@ void MaximalSampling::make_base_cells(const JobStage& stage) {
     const auto depth = static_cast<std::uint8_t>(level);
     for (std::int32_t j = 0; j < n; ++j)
       for (std::int32_t i = 0; i + j < n; ++i) {
-        open_.push_back({{f, i, j, depth, false}, all});
-        if (i + j + 1 < n) open_.push_back({{f, i + 1, j + 1, depth, true}, all});
+        open_.push_back({{f, i, j, depth, false}, kinds});
+        if (i + j + 1 < n) open_.push_back({{f, i + 1, j + 1, depth, true}, kinds});
       }
   }
 }
@@ -143,23 +152,47 @@ void MaximalSampling::weigh_kinds() {
     kind_weights_.push_back(insertion_->share(kind.shape) * rules_->weight_of(kind));
 }
 
-Index MaximalSampling::draw_kind(std::uint64_t kinds, double chance) const {
+Index MaximalSampling::draw_kind(std::uint64_t kinds, const SurfacePoint& point, double chance) const {
+  const auto count = static_cast<Index>(kind_weights_.size());
   double total = 0;
-  for (std::size_t k = 0; k < kind_weights_.size(); ++k)
-    if (kinds >> k & 1) total += kind_weights_[k];
+  for (Index k = 0; k < count; ++k)
+    if (kinds >> k & 1) total += weight_at(k, point);
   double pick = chance * total;
   Index kind = k_none;
-  for (std::size_t k = 0; k < kind_weights_.size(); ++k) {
-    if (!(kinds >> k & 1) || kind_weights_[k] <= 0) continue;
-    kind = static_cast<Index>(k);
-    pick -= kind_weights_[k];
+  for (Index k = 0; k < count; ++k) {
+    const double weight = kinds >> k & 1 ? weight_at(k, point) : 0;
+    if (weight <= 0) continue;
+    kind = k;
+    pick -= weight;
     if (pick < 0) break;
   }
   return kind;
 }
 
+/// Returns the mean of relative(kind) as kinds are drawn where densities are even.
+template <class Relative>
+double MaximalSampling::mean_of(Relative&& relative) const {
+  double sum = 0, total = 0;
+  for (std::size_t k = 0; k < kind_weights_.size(); ++k) {
+    sum += kind_weights_[k] * relative(rules_->kinds()[k].shape);
+    total += kind_weights_[k];
+  }
+  return total > 0 ? sum / total : 0;
+}
+
+double MaximalSampling::crowding(const SurfacePoint& point) const {
+  return mean_of([&](Index shape) { return densities_->relative(shape, point); });
+}
+
+/// Returns at least as much as at any point of the face.
+double MaximalSampling::most_crowding(Index face) const {
+  if (densities_->is_even()) return 1;
+  return mean_of([&](Index shape) { return densities_->most_relative(shape, face); });
+}
+
 double MaximalSampling::mean_drops(Index face, double per_area) const {
-  return std::min(per_area * mesh_->face_area(face) / rules_->mean_square_size(face), k_most_drops);
+  return std::min(most_crowding(face) * per_area * mesh_->face_area(face) / rules_->mean_square_size(face),
+                  k_most_drops);
 }
 
 /// Calls visit(key of the drop, its number among random ones, point) for each.
@@ -169,6 +202,7 @@ void MaximalSampling::draw_candidates(Index face, int try_batch, double per_area
   constexpr Index k_drops_between_looks = 1 << 14;
   if (!options_->forbidden.empty() && options_->forbidden[face]) return;
   const std::uint64_t own = mixed(mixed(options_->seed, static_cast<std::uint64_t>(try_batch)), face);
+  const double most = most_crowding(face);
   const auto count = static_cast<Index>(mean_drops(face, per_area) + uniform(own, 0));
   for (Index i = 0; i < count; ++i) {
     if (i % k_drops_between_looks == 0) stage.check();
@@ -176,7 +210,7 @@ void MaximalSampling::draw_candidates(Index face, int try_batch, double per_area
     double along = uniform(key, 1), up = uniform(key, 2);
     if (along + up > 1) along = 1 - along, up = 1 - up;
     const SurfacePoint point = point_at(face, Vec2(along, up));
-    visit(order(point, key), key, point);
+    if (densities_->is_even() || uniform(key, 5) * most < crowding(point)) visit(order(point, key), key, point);
   }
 }
 
@@ -206,7 +240,7 @@ void MaximalSampling::try_batch(int number, double per_area, const JobStage& sta
     candidates.clear();
     for_each([&](double order, std::uint64_t key, const SurfacePoint& point) {
       if (bin_of(order) < begin || bin_of(order) >= end) return;
-      const Index kind = draw_kind(~std::uint64_t{0}, uniform(key, 0));
+      const Index kind = draw_kind(~std::uint64_t{0}, point, uniform(key, 0));
       candidates.push_back({order, kind, point.face, point, drawn_scale(kind, point, uniform(key, 4))});
     });
     const auto share = [&](std::size_t drop) { return static_cast<double>(drop) / count; };
@@ -241,7 +275,7 @@ DistributionStop MaximalSampling::sample_at_random(const JobStage& stage) {
 /// Throws darts into every cell whose center seems free, unless that is for numbers alone; in others by their area.
 void MaximalSampling::throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const {
   const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
-  const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
+  const Index kind = draw_kind(look.free ? look.free : look.open, view.center, uniform(key, 0));
   if (kind == k_none) return;
   rules_->see(open.cell, rules_->kinds()[kind].shape, view);
   double along = uniform(key, 1), up = uniform(key, 2);
@@ -264,6 +298,7 @@ void MaximalSampling::throw_dart(const OpenCell& open, CellView& view, Index num
     return;
   }
   const SurfacePoint point = point_at(open.cell.face, open.cell.weights(along, up));
+  if (weight_at(kind, point) <= 0) return;  // on an edge where the density is 0
   look.has_dart = true;
   look.dart = {order(point, key), kind, number, point, drawn_scale(kind, point, uniform(key, 4))};
 }
@@ -554,8 +589,8 @@ DistributionStop MaximalSampling::run(const JobStage& stage) {
   }
   if (!insertion_->is_any_wanted()) return DistributionStop::counts;
   if (!options_->maximal) return DistributionStop::tired;
-  return certificate_.uncertified_area > k_unproven * mesh_->area() ? DistributionStop::unproven
-                                                                    : DistributionStop::full;
+  return certificate_.uncertified_area > k_unproven * searched_area_ ? DistributionStop::unproven
+                                                                     : DistributionStop::full;
 }
 
 }  // namespace saddleback::distribution

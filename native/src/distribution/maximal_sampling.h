@@ -5,13 +5,14 @@
 
 #include "saddleback/distribution/distribution.h"
 
+#include "distribution/class_densities.h"
 #include "distribution/insertion.h"
 
 namespace saddleback::distribution {
 
 class MaximalSampling {
  public:
-  MaximalSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion,
+  MaximalSampling(const Mesh& mesh, const ClassDensities& densities, const PlacingRules& rules, Insertion& insertion,
                   const DistributionOptions& options);
 
   /// Lays copies until every count is met, nothing more fits, or (unless all is wanted) rooms become rare.
@@ -57,7 +58,15 @@ class MaximalSampling {
   bool searches() const { return options_->maximal || !options_->counts.empty(); }
   void weigh_kinds();
   DistributionStop sample_at_random(const JobStage& stage);
+  double weight_at(Index kind, const SurfacePoint& point) const {
+    return kind_weights_[kind] * densities_->relative(rules_->kinds()[kind].shape, point);
+  }
+  template <class Relative>
+  double mean_of(Relative&& relative) const;
+  double crowding(const SurfacePoint& point) const;
+  double most_crowding(Index face) const;
   double mean_drops(Index face, double per_area) const;
+  std::uint64_t kinds_in(Index face) const;
   void try_batch(int number, double per_area, const JobStage& stage);
   template <class Visit>
   void draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage, Visit&& visit) const;
@@ -66,7 +75,7 @@ class MaximalSampling {
   void round(const JobStage& stage);
   void look(const OpenCell& open, Index number, Neighbors& near, Look& look) const;
   void find_neighbors(const Cell& cell, const CellView& view, Neighbors& near) const;
-  Index draw_kind(std::uint64_t kinds, double chance) const;
+  Index draw_kind(std::uint64_t kinds, const SurfacePoint& point, double chance) const;
   double drawn_scale(Index kind, const SurfacePoint& point, double chance) const {
     const double size = rules_->size_at(rules_->kinds()[kind].shape, point);
     return size * (options_->smallest + (options_->largest - options_->smallest) * chance);
@@ -89,6 +98,7 @@ class MaximalSampling {
   void lose(const Cell& cell);
 
   const Mesh* mesh_;
+  const ClassDensities* densities_;
   const PlacingRules* rules_;
   Insertion* insertion_;
   const DistributionOptions* options_;
@@ -101,7 +111,8 @@ class MaximalSampling {
   /// probed, as their parts would be one by one.
   std::vector<std::uint8_t> suspected_;
   std::vector<double> forbidden_depth_;  ///< per vertex: at least so far within what is forbidden
-  std::vector<double> kind_weights_;     ///< sums, by which kinds are drawn
+  std::vector<double> kind_weights_;     ///< by which kinds are drawn, where densities are even
+  double searched_area_ = 0;             ///< where some kind may be centered
   Certificate certificate_;
   std::int64_t inserted_in_round_ = 0;
   double least_stuck_ = 0;  ///< cells so small are given up where shapes cannot be laid

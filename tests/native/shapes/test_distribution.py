@@ -505,7 +505,7 @@ REFUSED = {
     "range upside down": ({"size_range": (2, 1)}, "no range"),
     "density without counts": ({"density": np.ones(625)}, "counts must tell"),
     "density zero": ({"density": np.zeros(625), "counts": [1]}, "zero everywhere"),
-    "density and maximal": ({"density": np.ones(625), "counts": [1], "maximal": True}, "full everywhere"),
+    "density zero, maximal": ({"density": np.zeros(625), "maximal": True}, "zero everywhere"),
     "density not finite": ({"density": np.full(625, np.nan), "counts": [1]}, "not finite"),
     "negative gap": ({"gap": -1}, "gap is -1"),
     "gap wider than the surface": ({"gap": 50.0}, "gap is 50: shape 0 .* larger than the surface, which has 1"),

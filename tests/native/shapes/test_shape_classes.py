@@ -105,6 +105,91 @@ def test_full_with_sizes_and_fields_of_each_class() -> None:
             assert outside or any(extra.overlaps(copies[i]) for i in near)
 
 
+def values_at(mesh: sb.Mesh, values: np.ndarray, points: sb.SurfacePoints) -> np.ndarray:
+    """Values of vertices (V,), linear within faces."""
+    found: np.ndarray = (values[mesh.triangles[points.faces]] * points.barycentric).sum(axis=1)
+    return found
+
+
+def at(points: sb.SurfacePoints, i: int) -> sb.SurfacePoints:
+    return sb.SurfacePoints(points.faces[[i]], points.barycentric[[i]])
+
+
+def fits(result: sb.Distribution, shape: int, point: sb.SurfacePoints, field: sb.DirectionField) -> bool | None:
+    """Whether another copy of a class, turned as the field says and a little larger, fits among those that lie there;
+    None where it cannot be laid at all.
+    """
+    mesh, laid = result.mesh, result.placements
+    size = laid.scale[laid.shape == shape][0]
+    away = np.linalg.norm(laid.center.positions(mesh) - point.positions(mesh), axis=1)
+    laid = laid[away < 1.1 * (size + laid.scale.max())]  # the circumradii are 1
+    corners = mesh.vertices[mesh.triangles[point.faces[0]]]
+    first = corners[1] - corners[0]
+    normal = np.cross(first, corners[2] - corners[0])
+    ahead = field.directions(point)[0]
+    angle = np.arctan2(np.cross(normal, first) @ ahead / np.linalg.norm(normal), first @ ahead)
+    among = sb.Placements(
+        np.append(laid.shape, shape),
+        sb.SurfacePoints(
+            np.append(laid.center.faces, point.faces), np.vstack([laid.center.barycentric, point.barycentric])
+        ),
+        np.append(laid.angle, angle),
+        np.append(laid.scale, 1.02 * size),
+        np.append(laid.mirrored, False),
+    )
+    mapped = sb.map_shapes(mesh, result.shapes, among, result.field)
+    return None if mapped.failures else bool(sb.check_distribution(mesh, mapped, samples=1).ok)
+
+
+def test_full_wherever_the_density_of_a_class_is_positive() -> None:
+    """Nothing fits where a class may lie, by brute force, and none lies where its density is 0."""
+    mesh, _ = ring()
+    field, (x, y, z) = sb.direction_field(mesh, 1), mesh.vertices.T
+    densities = [np.maximum(0, x - 0.3), np.maximum(0, 0.2 - x) * (y > 0), 1e-200 * np.maximum(0, z)]
+    options = {"field": field, "size": 0.12, "maximal": True, "seed": 3}
+    result = sb.distribute(mesh, SHAPES, density=densities, **options)
+    assert result.stop_reason == "full" and result.certificate.uncertified_area < 0.02 * mesh.area
+    assert sb.check_distribution(mesh, result, samples=1000).ok
+    for shape, density in enumerate(densities):
+        laid = result.placements[result.placements.shape == shape]
+        assert len(laid) > 10 and values_at(mesh, density, laid.center).min() > 0
+        tried = sb.sample(mesh, 80, 1.0 * (density > 0), seed=shape)
+        wanted = values_at(mesh, density, tried) > 0
+        told = [fits(result, shape, at(tried, i), field) for i in np.flatnonzero(wanted)]
+        assert told.count(False) > 50 and told.count(True) == 0
+        # Elsewhere the certificate says nothing.
+        bare = sb.sample(mesh, 80, 1.0 * np.all([d == 0 for d in densities], axis=0), seed=shape)
+        assert [fits(result, shape, at(bare, i), field) for i in range(80)].count(True) > 20
+    assert same(result, sb.distribute(mesh, SHAPES, density=np.array(densities) * 2.0**-50, threads=1, **options))
+
+
+def test_where_all_is_full_densities_say_which_class_lies_where() -> None:
+    mesh, field = plane()
+    x = mesh.vertices[:, 0]
+    options = {"field": field, "size": 0.02, "maximal": True}
+    two = sb.distribute(mesh, [STAR, STAR], density=[1 - x, x], **options)
+    on_right = two.placements.center.positions(mesh)[:, 0] > 0.5
+    left, right = (np.bincount(two.placements.shape[side]) for side in (~on_right, on_right))
+    assert left[0] > 2 * left[1] and right[1] > 2 * right[0]
+    even, painted = (sb.distribute(mesh, STAR, density=d, **options) for d in (None, 0.001 + x))
+    assert len(painted) == pytest.approx(len(even), rel=0.03)
+    assert same(even, sb.distribute(mesh, STAR, density=np.ones(len(x)), **options))
+
+
+def test_counts_that_follow_a_density_end_where_nothing_more_fits() -> None:
+    mesh, field = plane()
+    x = mesh.vertices[:, 0]
+    density = np.maximum(0, x - 0.25)
+    options = {"field": field, "density": density, "size": 0.03}
+    few = sb.distribute(mesh, DISK, 40, maximal=True, **options)
+    assert few.stop_reason == "counts" and len(few) == 40
+    assert same(few, sb.distribute(mesh, DISK, 40, **options))
+    many = sb.distribute(mesh, DISK, 1000, maximal=True, **options)
+    assert many.stop_reason == "full" and many.certificate.uncertified_area == 0
+    assert len(many) > len(sb.distribute(mesh, DISK, 1000, **options))
+    assert many.placements.center.positions(mesh)[:, 0].min() > 0.25
+
+
 def test_what_is_given_once_for_each_is_what_is_given_for_all() -> None:
     mesh, field = ring()
     size = np.linspace(0.08, 0.15, mesh.vertex_count)

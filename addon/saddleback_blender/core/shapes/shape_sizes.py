@@ -102,6 +102,12 @@ def crowding(mesh: Any, density: Reals) -> float:
     return max(1.0, high / float(np.average(density, weights=_vertex_areas(mesh))))
 
 
+def painted_share(mesh: Any, density: Reals) -> float:
+    """Returns the share of the surface where shapes may be centered."""
+    areas = _vertex_areas(mesh)
+    return float(areas[density > 0].sum() / areas.sum())
+
+
 def _vertex_areas(mesh: Any) -> Reals:
     thirds = np.repeat(np.asarray(mesh.face_areas, np.float64) / 3.0, 3)
     areas: Reals = np.bincount(mesh.triangles.ravel(), thirds, minlength=len(mesh.vertices)).astype(np.float64)

@@ -30,7 +30,9 @@ struct DistributionOptions {
   /// Every copy is scaled by another factor in this range, chosen at random.
   double smallest = 1, largest = 1;
   /// Density wanted at each vertex, in copies per area, of which only ratios matter; a list for all shapes, or one a
-  /// shape; empty: even. Needs counts.
+  /// shape; empty: even. Needs counts, or maximal: then it says in which order places are tried, each class by its
+  /// density's share of its own mean, and no copy is centered where that is 0; but the end is full, so it does not say
+  /// how many lie on an area. Sizes do.
   std::vector<std::vector<double>> density;
   /// Copies that lie on the surface already. They come first in the result, and count as copies of their shapes.
   Placements around;
@@ -45,7 +47,7 @@ struct DistributionOptions {
   /// Copies bend along the field: they are laid along its curves (see center_line), as map_shapes lays them when given
   /// the field. Needs a field, and is not for maximal.
   bool bend = false;
-  /// Goes on until nothing more fits, and proves it: see Certificate.
+  /// Goes on until nothing more fits wherever a shape's density is positive, and proves it: see Certificate.
   bool maximal = false;
   /// Clearance of that proof, as a share of the circumradius, and half of the gap, of the smallest copy of a kind that
   /// might lie there.
@@ -58,8 +60,8 @@ enum class DistributionStop : std::uint8_t {
   counts,    ///< every count is met
   full,      ///< nothing more fits, which the certificate proves
   tired,     ///< no room was found in a while
-  unproven,  ///< no room was found, but of more than half of the surface no certificate can tell: shapes or gaps are
-             ///< too large for how it bends
+  unproven,  ///< no room was found, but of more than half of where copies may be centered no certificate can tell:
+             ///< shapes or gaps are too large for how the surface bends
 };
 
 enum class Rejection : std::uint8_t {
@@ -71,9 +73,10 @@ enum class Rejection : std::uint8_t {
 };
 inline constexpr std::size_t k_rejection_count = 5;
 
-/// A proof that nothing more fits. The surface is cut into cells. Of each cell either all placements centered in it
-/// meet a copy that lies there, or its center's does and no placement centered in it differs by more than `tolerance`.
-/// So whatever is laid anywhere comes nearer to a copy than the tolerance.
+/// A proof that nothing more fits. The surface is cut into cells, for each shape where its density is positive. Of each
+/// cell either all placements centered in it meet a copy that lies there, or its center's does and no placement
+/// centered in it differs by more than `tolerance`. So whatever is laid there comes nearer to a copy than the
+/// tolerance.
 struct Certificate {
   double tolerance = 0;  ///< mesh units; 0 without a certificate
   std::int64_t cells = 0, leaves = 0;
@@ -101,7 +104,7 @@ struct DistributionResult {
 /// or zero everywhere); a range of sizes that is none; a copy larger than the surface, alone or with half of the gap
 /// around; a negative gap; packing outside 0 to 1; a tolerance outside 0.001 to 0.5; copies to lay around that meet
 /// each other, or do not fit where they are; shares of another number than shapes, negative, all zero, or with maximal;
-/// bend without a field or with maximal; a density without counts, or with maximal; everything forbidden. Cancelled.
+/// bend without a field or with maximal; a density without counts or maximal; everything forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 
