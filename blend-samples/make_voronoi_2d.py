@@ -5,7 +5,7 @@
     blender -b --factory-startup --python blend-samples/render.py -- OUT.blend OUT.png
 
 SCENE is one of: tiles (a plate with a hole), stipples (dots by an image's darkness), vase (through a UV map), shell
-(through a disk), sweep (an animation of 120 frames: open OUT.blend and press play).
+(through a disk), bubbles (sites with weights), sweep (an animation of 120 frames: open OUT.blend and press play).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ import studio
 import subject as models
 
 WIDTH, HEIGHT, SAMPLES = 1280, 960, 8
-SCENES = ("tiles", "stipples", "vase", "shell", "sweep")
+SCENES = ("tiles", "stipples", "vase", "shell", "bubbles", "sweep")
 
 
 def main() -> None:

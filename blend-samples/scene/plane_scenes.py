@@ -157,8 +157,8 @@ def vase() -> Items:
     return [item, output(item, "voronoi cells")]
 
 
-def shell() -> Items:
-    """Lines on a wavy shell that has no UV map: a disk."""
+def wavy_shell() -> bpy.types.Object:
+    """A disk without a UV map."""
     corners, rings = 160, 60
     flat = [np.zeros((1, 2))] + [ring(r, corners) for r in np.linspace(0.02, 1, rings)]
     places = np.concatenate(flat)
@@ -170,13 +170,35 @@ def shell() -> Items:
     for j in range(rings - 1):
         a, b = 1 + j * corners, 1 + (j + 1) * corners
         faces += [(a + i, b + i, b + (i + 1) % corners, a + (i + 1) % corners) for i in range(corners)]
-    item = add_mesh("Shell", vertices, faces)
+    return add_mesh("Shell", vertices, faces)
+
+
+def shell() -> Items:
+    """Lines on a wavy shell."""
+    item = wavy_shell()
     bpy.ops.saddleback.voronoi_2d(space="DISK", count=220, seed=2, iterations=40, make_cells=False, edge_radius=0.009)
     output(item, "voronoi edges").data.materials[0].user_remap(looks.gold())
     item.data.materials.append(studio.principled("Glaze", color("#1f5a63"), Roughness=0.25, Clearcoat=0.4))
     for polygon in item.data.polygons:
         polygon.use_smooth = True
     return [item, output(item, "voronoi edges")]
+
+
+def bubbles() -> Items:
+    """Sites of three weights on a wavy shell: the heaviest have the largest cells, all are raised."""
+    item = wavy_shell()
+    chosen = np.random.default_rng(6).permutation(len(item.data.vertices))[:130]
+    weights = np.zeros(len(item.data.vertices), np.float32)
+    weights[chosen] = np.repeat([0.24, 0.12, 0.0], [9, 25, 96])
+    item.data.attributes.new("size", "FLOAT", "POINT").data.foreach_set("value", weights)
+    is_site = np.zeros(len(weights), bool)
+    is_site[chosen] = True
+    item.data.vertices.foreach_set("select", is_site)
+    bpy.ops.saddleback.voronoi_2d(
+        space="DISK", sites_source="SELECTED", weights_name="size", iterations=6, make_edges=False, make_cells=True,
+        gap=0.012, thickness=0.035, inset=0.015,
+    )  # fmt: skip
+    return [item, output(item, "voronoi cells")]
 
 
 def sweep(sites: int = 60) -> Items:

@@ -29,6 +29,7 @@ PICTURES: dict[str, tuple[str, dict[str, int], int, int, bool]] = {
     "stipples": ("stipples", {}, 660, 1, True),
     "vase": ("vase", {}, 460, 1, False),
     "shell": ("shell", {}, 560, 1, False),
+    "bubbles": ("bubbles", {}, 560, 1, False),
     "sweep-1": ("sweep", {}, 440, 30, True),
     "sweep-2": ("sweep", {}, 440, 58, True),
     "sweep-3": ("sweep", {}, 440, 84, True),

@@ -10,6 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 import saddleback as sb
+from tests import meshes
+from tests.truth.cell_parts import assert_is_split
 from tests.truth.plane import (
     ROUNDINGS,
     SQUARE,
@@ -286,3 +288,36 @@ def finished_sweeps(sites: Floats, rng: Random) -> None:
     assert np.isfinite(ends).all()
     assert sorted(map(sorted, pairs[finished].tolist())) == sorted(map(sorted, diagram.edge_sites[closed].tolist()))
     assert sorted(map(sorted, pairs.tolist())) == sorted(map(sorted, diagram.edge_sites.tolist()))
+
+
+@guards("Chart.lift", "LiftedVoronoi.locate", on="plane")
+def lifted_disks(sites: Floats, rng: Random) -> None:
+    """On a flat mesh: the nearest disk of its points in 250 digits, and edges as far from both within the tolerance."""
+    sites = some_of(sites, rng, 10)
+    weights = random_weights(sites, rng)
+    corner, side = box_about(sites, rng)
+    size = max(np.abs(corner).max() + side, np.abs(sites).max())
+    if side < 1e-6 * size:
+        return  # what lies where is a matter of rounding
+    vertices, triangles = meshes.grid(
+        int(rng.integers(2, 6)), int(rng.integers(2, 6)), jitter=0.2, seed=int(rng.integers(99))
+    )
+    uv = corner + side * vertices[:, :2]
+    mesh = sb.Mesh(np.column_stack([uv, np.zeros(len(uv))]), triangles)
+    tolerance = side * 10.0 ** rng.uniform(-7, -1)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    lifted = sb.Chart(mesh, uv).lift(diagram, tolerance=tolerance, threads=1)
+    least = max(tolerance, 2.0**-28 * side)  # finer ones are taken as that
+    slack = 2.01 * least + 1e-13 * size
+    points = sb.sample(mesh, 12, seed=int(rng.integers(1 << 30)))
+    places = points.positions(mesh)[:, :2]
+    for place, found in zip(places, lifted.locate(points).tolist(), strict=True):
+        distances = scaled_distances(place, sites, weights)
+        assert float(distances[found] - min(distances)) <= slack, f"{found} for {distances.index(min(distances))}"
+    for k, pair in enumerate(lifted.edge_cells):
+        for place in lifted.edge_points[lifted.edge_offsets[k] : lifted.edge_offsets[k + 1], :2]:
+            distances = scaled_distances(place, sites[pair], weights[pair])
+            assert abs(float(distances[0] - distances[1])) <= slack
+    assert abs(lifted.areas.sum() - mesh.area) <= 64 * ROUNDINGS * size * side
+    split = lifted.split()
+    assert_is_split(mesh, split, lifted.areas)

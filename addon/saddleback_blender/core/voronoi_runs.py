@@ -47,7 +47,7 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
             places = sites.places
             if settings.seamless:
                 places = tile_of(space.loops, request.surface.name).copies(places)
-            diagram = devices.plane_diagram(places, request.weights, request.threads, progress, job)
+            diagram = devices.plane_diagram(places, _weights(request, space), request.threads, progress, job)
         else:
             diagram = native.load().power_diagram_2d(sites.places, sites.powers, threads=request.threads, job=job)
     if space.frame is None:
@@ -108,8 +108,6 @@ def _check(request: Voronoi2dRequest) -> None:
             f"'{name}': cells are as large as the weights say, or all alike; leave their name empty, or switch Equal "
             "Cells off"
         )
-    if request.weights is not None and settings.space != "OUTLINE":
-        raise BadInputError(f"'{name}': weights count on flat meshes only; leave their name empty, or choose Outline")
 
 
 def _check_seamless(request: Voronoi2dRequest) -> None:
@@ -123,6 +121,14 @@ def _check_seamless(request: Voronoi2dRequest) -> None:
     ):
         if is_wrong:
             raise BadInputError(f"'{name}': Seamless: {reason}")
+
+
+def _weights(request: Voronoi2dRequest, space: Space) -> Reals | None:
+    """The sites' weights as lengths of the plane, by the map's mean scale."""
+    if request.weights is None or space.frame is not None:
+        return request.weights
+    scaled: Reals = request.weights * np.sqrt(space.chart.area / space.mesh.area)
+    return scaled
 
 
 def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sites:
@@ -227,7 +233,7 @@ def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, 
     begin, steps = progress.fraction, request.settings.iterations
     for number in range(steps):
         with progress.stage(begin + (0.7 - begin) * (number + 1) / steps, "relaxing the sites") as job:
-            diagram = devices.plane_diagram(sites.places, None, request.threads, progress, job)
+            diagram = devices.plane_diagram(sites.places, _weights(request, space), request.threads, progress, job)
             centroids = space.chart.lift(diagram, threads=request.threads, job=job).centroids
             sites = sites.moved(space, np.where(np.isfinite(centroids), centroids, sites.places))
     return sites
@@ -280,11 +286,6 @@ def _flat(
     cells = _bare_cells(space, sites, np.asarray(clipped.areas).reshape(-1, count).sum(axis=0))
     polygons: CellPolygons | None = None
     vanished = 0
-    if settings.make_cells and flat.has_holes and request.weights is not None:
-        raise BadInputError(
-            f"'{request.surface.name}': a cell lies around a hole, which works with sites of equal weight only; "
-            "add sites near the hole, or switch Cells off"
-        )
     if settings.make_cells and flat.has_holes:
         cells = _lifted(request, space, sites, diagram, key, progress, cache)
     elif settings.make_cells:

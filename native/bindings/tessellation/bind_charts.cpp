@@ -67,6 +67,9 @@ the map's border and may come in again.
 Parameters
 ----------
 diagram : Voronoi2d
+    Of any kind; edges between weighted sites are polylines along the curves, by which their cells are divided.
+tolerance : float
+    In the plane: no point of a curved edge is farther from its polyline. 0: a thousandth of a mean cell's width.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -74,7 +77,7 @@ job : Job, optional
 Raises
 ------
 InputError
-    A diagram without sites.
+    A diagram without sites, a tolerance that is negative.
 Cancelled
     The job was cancelled.
 
@@ -209,14 +212,17 @@ void bind_chart(py::module_& m) {
           py::arg("points"), "(m, 2) float64: where surface points lie in the plane.")
       .def(
           "lift",
-          [](const py::object& self, const py::object& diagram, const py::object& threads, const py::object& job) {
+          [](const py::object& self, const py::object& diagram, const py::object& tolerance, const py::object& threads,
+             const py::object& job) {
             const Chart& chart = py::cast<const Chart&>(self);
             const Voronoi2d& cells = as_voronoi_2d(diagram, "diagram");
-            const int count = as_integer(threads, "threads");
+            const LiftOptions options{.tolerance = as_real(tolerance, "tolerance"),
+                                      .threads = as_integer(threads, "threads")};
             const JobIn token(job);
-            return Lifted{without_gil([&] { return lift(chart, cells, count, token); }), self};
+            return Lifted{without_gil([&] { return lift(chart, cells, options, token); }), self};
           },
-          py::arg("diagram"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_lift_doc)
+          py::arg("diagram"), py::kw_only(), py::arg("tolerance") = 0.0, py::arg("threads") = 0,
+          py::arg("job") = py::none(), k_lift_doc)
       .def("__repr__",
            [](const Chart& chart) { return message("<saddleback.Chart of ", chart.mesh().face_count(), " faces>"); });
 }

@@ -3478,7 +3478,14 @@ class Chart:
         """The surface points at places of the plane (m, 2): a SurfacePoints of those that there are, and (m,) bool saying which. O(m log F)."""
     def places(self, points: _Points) -> _Floats:
         """(m, 2) float64: where surface points lie in the plane."""
-    def lift(self, diagram: Voronoi2d, *, threads: SupportsIndex = 0, job: Job | None = None) -> LiftedVoronoi:
+    def lift(
+        self,
+        diagram: Voronoi2d,
+        *,
+        tolerance: SupportsFloat = 0.0,
+        threads: SupportsIndex = 0,
+        job: Job | None = None,
+    ) -> LiftedVoronoi:
         """Brings a diagram of the plane to the surface: a LiftedVoronoi.
 
         Each point of the surface gets the cell that its place lies in. Edges are cut at every mesh edge that they cross, end at
@@ -3487,6 +3494,9 @@ class Chart:
         Parameters
         ----------
         diagram : Voronoi2d
+            Of any kind; edges between weighted sites are polylines along the curves, by which their cells are divided.
+        tolerance : float
+            In the plane: no point of a curved edge is farther from its polyline. 0: a thousandth of a mean cell's width.
         threads : int
             0: all cores. The result does not depend on it.
         job : Job, optional
@@ -3494,7 +3504,7 @@ class Chart:
         Raises
         ------
         InputError
-            A diagram without sites.
+            A diagram without sites, a tolerance that is negative.
         Cancelled
             The job was cancelled.
 

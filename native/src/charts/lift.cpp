@@ -7,6 +7,7 @@
 #include "saddleback/charts/lifted_voronoi.h"
 #include "saddleback/error.h"
 
+#include "charts/curved_cells.h"
 #include "charts/face_cells.h"
 #include "support/threads/parallel.h"
 #include "tessellation/cells/split_mesh.h"
@@ -50,7 +51,7 @@ class Builder {
   }
 
   void add_face(Index face, Index site, const std::vector<FacePiece>& pieces) {
-    if (pieces.size() <= 1) {
+    if (pieces.empty() || (pieces.size() == 1 && !is_curved_)) {
       if (!pieces.empty()) site = pieces[0].site;
       out_.face_cell[face] = site;
       const Vec2* corner = &chart_.corners()[3 * face];
@@ -63,7 +64,7 @@ class Builder {
   }
 
   LiftedVoronoi finish() {
-    find_edges_along_mesh_edges();
+    if (!is_curved_) find_edges_along_mesh_edges();
     for (std::size_t i = 0; i < out_.areas.size(); ++i) out_.centroids[i] /= out_.areas[i];  // 0 / 0 where it is none
     chain_edges();
     return std::move(out_);
@@ -104,7 +105,9 @@ class Builder {
     const Index* vertex = &out_.piece_vertices[first];
     for (Index i = 0; i < count; ++i) {
       const Index edge = piece.corners[i].side, from = vertex[i], to = vertex[(i + 1) % count];
-      if (edge == k_none) {
+      if (is_curved_) {
+        if (edge != k_none) add_segment(edge, from, to);
+      } else if (edge == k_none) {
         add_edge_side(piece.corners[i].line, piece.corners[i].place, piece.corners[(i + 1) % count].place, from, to,
                       piece.site);
       } else if (diagram_.edge_sites[edge][0] == piece.site) {
@@ -237,6 +240,10 @@ class Builder {
       out_.edge_points.push_back(to);
       next = leaving.find(to);
     }
+    const auto begin = out_.edge_points.begin() + out_.edge_offsets.back();
+    const auto place = [&](Index point) { return out_.positions[point]; };
+    if (std::all_of(begin, out_.edge_points.end(), [&](Index point) { return place(point) == place(*begin); }))
+      return out_.edge_points.resize(out_.edge_offsets.back());  // rounding left it no length
     out_.edge_offsets.push_back(static_cast<Index>(out_.edge_points.size()));
     out_.edge_of.push_back(edge);
     out_.edge_cells.push_back(diagram_.edge_sites[edge]);
@@ -244,6 +251,7 @@ class Builder {
 
   const Chart& chart_;
   const Voronoi2d& diagram_;
+  const bool is_curved_ = !diagram_.weights.empty();
   LiftedVoronoi out_;
   std::unordered_map<CornerKey, Index, KeyHash> numbers_;
   std::vector<Segment> segments_;
@@ -261,12 +269,33 @@ std::vector<Index> sites_of_faces(const Chart& chart, const Voronoi2d& diagram, 
   return diagram.locate(middles, threads);
 }
 
+LiftedVoronoi lift_curved(const Chart& chart, const Voronoi2d& diagram, const LiftOptions& options,
+                          const JobStage& stage) {
+  constexpr double k_usual = 1e-3, k_finest = 0x1p-28;  // as of cells that are clipped
+  const double width = std::sqrt(chart.area() / static_cast<double>(diagram.cell_sites.size()));
+  const double tolerance = options.tolerance > 0 ? std::max(options.tolerance, k_finest * width) : k_usual * width;
+  const charts::CurvedCells cells =
+      charts::divide_faces(chart, diagram, tolerance, options.threads, stage.part(0, 0.8));
+  Builder builder(chart, diagram);
+  for (Index f = 0; f < chart.mesh().face_count(); ++f) {
+    stage.check();
+    builder.add_face(f, cells.face_site[f], cells.pieces[f]);
+  }
+  stage.update(0.9);
+  LiftedVoronoi result = builder.finish();
+  stage.update(1);
+  return result;
+}
+
 }  // namespace
 
-LiftedVoronoi lift(const Chart& chart, const Voronoi2d& diagram, int threads, Job* job) {
+LiftedVoronoi lift(const Chart& chart, const Voronoi2d& diagram, const LiftOptions& options, Job* job) {
   if (diagram.sites.empty()) throw InputError("diagram: it has no sites");
-  if (!diagram.weights.empty()) throw InputError("diagram: wanted one without weights, whose edges are straight");
+  if (!(options.tolerance >= 0))
+    throw InputError(message("tolerance: wanted a length of 0 or more, got ", options.tolerance));
   const JobStage stage(job, "Lifting the diagram");
+  if (!diagram.weights.empty()) return lift_curved(chart, diagram, options, stage);
+  const int threads = options.threads;
   const Index face_count = chart.mesh().face_count();
   const std::vector<Index> face_site = sites_of_faces(chart, diagram, threads, stage);
   stage.update(0.2);

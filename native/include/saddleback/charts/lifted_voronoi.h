@@ -37,10 +37,16 @@ struct LiftedVoronoi {
   SplitMesh split(const Mesh& mesh) const;
 };
 
+struct LiftOptions {
+  double tolerance = 0;  ///< in the plane, of polylines along curved edges, by which cells are divided; 0: a thousandth
+                         ///< of a mean cell's width, of which it is 2^-28 at least
+  int threads = 0;       ///< 0: all cores
+};
+
 /// Each point of the surface gets the cell that its place in the plane lies in. What the map does not cover is left
 /// out; a cell that comes to several islands or parts of the border is in several parts. Faces that share a mesh edge
-/// in the plane agree about it to the bit. \throw InputError for a diagram without sites; Cancelled. O((F + pieces)
-/// log F).
-LiftedVoronoi lift(const Chart& chart, const Voronoi2d& diagram, int threads = 0, Job* job = nullptr);
+/// in the plane agree about it to the bit. With weights sides are polylines along the curves. \throw InputError for a
+/// diagram without sites, a tolerance that is negative; Cancelled. O((F + pieces) log F).
+LiftedVoronoi lift(const Chart& chart, const Voronoi2d& diagram, const LiftOptions& options = {}, Job* job = nullptr);
 
 }  // namespace saddleback
