@@ -176,7 +176,6 @@ build_macos() {
   chmod +x "$folder"/*
   copy_headers "$python" .cache/macos/include
   build_for macos "build-macos-$1" -DSADDLEBACK_ZIG="$folder" -DCMAKE_BUILD_TYPE=Check \
-    -DCMAKE_PROJECT_INCLUDE="$PWD/native/cmake/platforms/precompiled.cmake" \
     -DCMAKE_CXX_FLAGS_CHECK="-O0 -g0 -fno-sanitize=undefined -DNDEBUG" -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
     -DPython_INCLUDE_DIR="$PWD/.cache/macos/include" -DPYTHON_MODULE_EXTENSION=.cpython-311-darwin.so
 }

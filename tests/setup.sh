@@ -63,7 +63,7 @@ fill_venv() {
 # build_native PRESET FOLDER [CMAKE_ARGUMENT...]: configures once, then builds what changed.
 build_native() {
   local preset=$1 folder=$2 launcher=(); shift 2
-  ! command -v ccache >/dev/null || launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  ! command -v ccache >/dev/null || launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
   if [ ! -f "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ]; then
     say "Configuring $folder"
     mkdir -p "$folder"
