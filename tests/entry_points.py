@@ -385,6 +385,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "progress_bar": lambda: contextlib.ExitStack().enter_context(sb.progress_bar(io.StringIO())),
         "project": lambda **more: sb.project(at.mesh, at.vertices * 1.1, **more),
         "quality_plot": lambda: sb.quality_plot(quality),
+        "neighbor_means": lambda: sb.neighbor_means(at.triangles, at.vertices),
         "periodic_voronoi_2d": lambda **more: sb.periodic_voronoi_2d(at.sites, **more),
         "PeriodicVoronoi2d.locate": lambda **more: sb.periodic_voronoi_2d(at.sites[:100]).locate(at.sites, **more),
         "power_diagram_2d": lambda **more: sb.power_diagram_2d(at.sites, at.sites[:, 0] * 1e-6, **more),

@@ -91,6 +91,7 @@ def counts_and_areas(mesh: sb.Mesh, rng: Random) -> None:
     "triangle_edges",
     "border_edges",
     "vertex_normals",
+    "neighbor_means",
     "cell_boundary",
     "cell_boundary_distance",
     "refine_to_cell_boundary",
@@ -110,6 +111,13 @@ def array_functions(mesh: sb.Mesh, rng: Random) -> None:
     lengths = np.linalg.norm(normals, axis=1)
     assert np.isfinite(normals).all()
     assert ((abs(lengths - 1) < 1e-9) | (lengths == 0)).all()
+    values = rng.random((mesh.vertex_count, 2))
+    beside: list[list[int]] = [[] for _ in range(mesh.vertex_count)]
+    for corners in mesh.triangles.tolist():
+        for corner in corners:
+            beside[corner] += [other for other in corners if other != corner]
+    means = [values[others].mean(axis=0) if others else [0.0, 0.0] for others in beside]
+    np.testing.assert_allclose(sb.neighbor_means(mesh.triangles, values), means, rtol=1e-9)
     cells = rng.integers(0, 3, mesh.face_count).astype(np.int32)
     distance = sb.cell_boundary_distance(mesh.vertices, mesh.triangles, cells)
     assert (distance >= 0).all()

@@ -20,6 +20,16 @@ py::array normals(const py::object& vertices, const py::object& triangles) {
   return to_array(without_gil([&] { return vertex_normals(points_of(xyz), triangles_of(indices)); }));
 }
 
+py::array means(const py::object& triangles, const py::object& values) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(values);
+  if (!rows || rows.ndim() != 2) throw InputError("values: wanted (V, k) floats");
+  const auto width = static_cast<Index>(rows.shape(1));
+  const std::span numbers(rows.data(), static_cast<std::size_t>(rows.size()));
+  return to_array(without_gil([&] { return neighbor_means(numbers, width, triangles_of(indices)); }))
+      .reshape(std::vector<py::ssize_t>{-1, width});
+}
+
 py::tuple edges_of(const py::object& triangles, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const Index count = as_integer(vertex_count, "vertex_count");
@@ -119,6 +129,19 @@ triangles : (T, 3) int array
 Returns
 -------
 (V, 3) float64; zero where no triangle with an area meets the vertex. O(V + T).)");
+  m.def("neighbor_means", &means, py::arg("triangles"), py::arg("values"),
+        R"(Mean of the numbers at the other corners of the triangles around each vertex.
+
+Parameters
+----------
+triangles : (T, 3) int array
+values : (V, k) float array
+    Numbers of each vertex, one at least.
+
+Returns
+-------
+(V, k) float64
+    A neighbor on two of the triangles counts twice; zero where no triangle is. O(V k + T k).)");
   m.def("triangle_edges", &edges_of, py::arg("triangles"), py::arg("vertex_count"),
         R"(Number the edges of triangles, in the order in which these come upon them, whichever way round.
 

@@ -2188,6 +2188,21 @@ def triangle_quality(vertices: ArrayLike, triangles: ArrayLike) -> Quality:
     O(V + T log T). After [frey1999].
     """
 
+def neighbor_means(triangles: ArrayLike, values: ArrayLike) -> _Floats:
+    """Mean of the numbers at the other corners of the triangles around each vertex.
+
+    Parameters
+    ----------
+    triangles : (T, 3) int array
+    values : (V, k) float array
+        Numbers of each vertex, one at least.
+
+    Returns
+    -------
+    (V, k) float64
+        A neighbor on two of the triangles counts twice; zero where no triangle is. O(V k + T k).
+    """
+
 def vertex_normals(vertices: ArrayLike, triangles: ArrayLike) -> _Floats:
     """Unit normals of plain triangles' vertices, weighted by area.
 

@@ -52,6 +52,16 @@ def test_edges_are_numbered_once_each_as_they_come() -> None:
     assert all(alone[min(a, b), max(a, b)] == t for (a, b), t in zip(rim.tolist(), owners.tolist(), strict=True))
 
 
+def test_means_count_a_neighbor_on_two_triangles_twice() -> None:
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    means = sb.neighbor_means(triangles, [[1.0], [2.0], [4.0], [8.0], [9.0]])
+    np.testing.assert_allclose(means[:, 0], [(2 + 4 + 4 + 8) / 4, (1 + 4) / 2, (1 + 2 + 1 + 8) / 4, (1 + 4) / 2, 0.0])
+    with pytest.raises(sb.InputError, match=r"values: wanted \(V, k\) floats"):
+        sb.neighbor_means(triangles, np.zeros(5))
+    with pytest.raises(sb.InputError, match="values: 0 numbers are no rows of 0"):
+        sb.neighbor_means(triangles, np.zeros((5, 0)))
+
+
 def test_normals_of_a_sphere_point_outwards_and_unused_vertices_have_none() -> None:
     vertices, triangles = synthetic_cells.sphere(4)
     normals = sb.vertex_normals(np.vstack([vertices, [[9.0, 9.0, 9.0]]]), triangles)
@@ -145,6 +155,8 @@ def test_what_is_wrong_is_named() -> None:
         sb.connected_parts(bad, 9)
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
         sb.vertex_normals(vertices, bad)
+    with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
+        sb.neighbor_means(bad, vertices)
     with pytest.raises(sb.InputError, match="column: wanted 3 to 3, got 4"):
         sb.cut_at_level(np.column_stack([vertices, vertices[:, 0]]), triangles, 4, 0.5)
     with pytest.raises(sb.InputError, match="fields: wanted a position and a value"):

@@ -19,7 +19,6 @@ from ..results import CellMesh
 from .boundary_distance import find_boundary
 from .cell_solid import Raised, raise_surface
 from .crossings import find_crossings, is_deep
-from .directions import Neighbors
 from .level_cut import Cut, cut_at_level, open_chords, split_edges
 from .room import Solid, beside, fit, has_any, surface_of
 
@@ -309,11 +308,11 @@ def _way_to_middle(distance: Floats, triangles: Ints, cells: Ints, shape: CellSh
 
 def _dome_share(within: Floats, triangles: Ints, progress: Progress) -> Floats:
     """The height (V,) of a half ellipsoid as a part of the thickness, its ridges smoothed; the rim stays. O(m)."""
-    neighbors = Neighbors(triangles, len(within))
+    means = native.load().neighbor_means
     share = within * (2.0 - within)
     for _ in range(DOME_SMOOTHING):
         progress.check()
-        share = np.where(within > 0.0, 0.5 * (share + neighbors.mean(share[:, None])[:, 0]), share)
+        share = np.where(within > 0.0, 0.5 * (share + means(triangles, share[:, None])[:, 0]), share)
     round_share: Floats = np.sqrt(np.clip(share, 0.0, 1.0))
     return round_share
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import native
 from ..progress import Progress
 from ..results import Indices, Reals
 from .cell_solid import vertex_normals
@@ -28,11 +29,10 @@ def smooth_directions(
     progress.check()
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
     progress.check()
-    neighbors = Neighbors(triangles, len(vertices))
-    smooth = normals
+    means, smooth = native.load().neighbor_means, normals
     for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, most))):
         progress.check()
-        smooth = _unit(0.2 * smooth + neighbors.mean(smooth), normals)
+        smooth = _unit(0.2 * smooth + means(triangles, smooth), normals)
     progress.check()
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -42,25 +42,6 @@ def smooth_directions(
     own = np.zeros(len(vertices), bool)
     own[triangles[turned]] = True
     return np.where(own[:, None], normals, smooth)
-
-
-class Neighbors:
-    """Corners of the triangles around each vertex but itself: one on two triangles counts twice."""
-
-    def __init__(self, triangles: Indices, count: int) -> None:
-        self.start, self.end = (ends.astype(np.intp) for ends in directed_edges(triangles))  # as numpy counts
-        self.count = count
-        self.times = np.maximum(np.bincount(self.start, minlength=count) + np.bincount(self.end, minlength=count), 1)
-
-    def mean(self, values: Reals) -> Reals:
-        """Mean (n, k) of the neighbors' values; zero where there are none. O(t)."""
-        return np.column_stack([self._mean(np.ascontiguousarray(column)) for column in values.T])
-
-    def _mean(self, values: Reals) -> Reals:
-        ways = ((self.start, self.end), (self.end, self.start))
-        sums = (np.bincount(to, values.take(of), minlength=self.count) for to, of in ways)
-        mean: Reals = sum(sums) / self.times
-        return mean
 
 
 def _unit(vectors: Reals, otherwise: Reals) -> Reals:

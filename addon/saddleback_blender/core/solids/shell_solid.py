@@ -15,7 +15,7 @@ from .. import native
 from ..progress import Progress
 from ..results import Indices, LampShell, Reals
 from .cell_mesh import drop_unused
-from .directions import Neighbors, smooth_directions
+from .directions import smooth_directions
 from .level_cut import cut_at_level
 from .mesh_edges import border_edges
 from .rib_surface import RibSurface, level_off
@@ -86,7 +86,7 @@ def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[
     used, number = np.unique(triangles[around[triangles].all(axis=1)], return_inverse=True)
     near: Indices = number.reshape(-1, 3).astype(np.int32)
     own, moved = there[used], places[used]
-    moved[own] = Neighbors(near, len(used)).mean(moved)[own]
+    moved[own] = native.load().neighbor_means(near, moved)[own]
     places[used] = moved
     direction[used[own]] = smooth_directions(moved, near, 0.0, progress)[own]
 

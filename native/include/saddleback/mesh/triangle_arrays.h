@@ -16,6 +16,11 @@ namespace saddleback {
 /// Unit normals (V,), weighted by the areas of the triangles about a vertex; zero where none has an area. O(V + T).
 std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
+/// Means (V, k) of the numbers (V, k) at the other corners of the triangles about a vertex, of which one on two of them
+/// counts twice; zero where no triangle is. \throw InputError for a width that does not divide the numbers. O(V k +
+/// T k).
+std::vector<double> neighbor_means(std::span<const double> values, Index width, std::span<const Triangle> triangles);
+
 struct TriangleEdges {
   std::vector<std::array<Index, 2>> ends;  ///< each edge once
   std::vector<Index> corner_edges;         ///< (3 T,) the edge from each triangle's corner to its next one

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <compare>
 
+#include "saddleback/error.h"
 #include "saddleback/mesh/triangle_arrays.h"
 
 #include "mesh/tables/corner_table.h"
@@ -20,6 +21,25 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const
     if (length > 0) normal /= length;
   }
   return normals;
+}
+
+std::vector<double> neighbor_means(std::span<const double> values, Index width, std::span<const Triangle> triangles) {
+  if (width <= 0 || values.size() % width != 0)
+    throw InputError(message("values: ", values.size(), " numbers are no rows of ", width));
+  const auto count = static_cast<Index>(values.size() / width);
+  check_corners(triangles, count);
+  std::vector<double> means(values.size(), 0.0);
+  std::vector<Index> times(count, 0);
+  for (const Triangle& t : triangles)
+    for (int i = 0; i < 3; ++i) {
+      const double *next = &values[std::size_t(t[(i + 1) % 3]) * width],
+                   *last = &values[std::size_t(t[(i + 2) % 3]) * width];
+      double* mean = &means[std::size_t(t[i]) * width];
+      for (Index k = 0; k < width; ++k) mean[k] += next[k] + last[k];
+      times[t[i]] += 2;
+    }
+  for (std::size_t k = 0; k < means.size(); ++k) means[k] /= std::max<Index>(times[k / width], 1);
+  return means;
 }
 
 std::vector<Index> connected_parts(std::span<const Triangle> triangles, Index vertex_count) {
