@@ -38,7 +38,9 @@ std::vector<double> neighbor_means(std::span<const double> values, Index width, 
       for (Index k = 0; k < width; ++k) mean[k] += next[k] + last[k];
       times[t[i]] += 2;
     }
-  for (std::size_t k = 0; k < means.size(); ++k) means[k] /= std::max<Index>(times[k / width], 1);
+  for (Index v = 0; v < count; ++v)
+    if (times[v] > 0)
+      for (Index k = 0; k < width; ++k) means[std::size_t(v) * width + k] /= times[v];
   return means;
 }
 
