@@ -63,14 +63,16 @@ def test_shapes_are_laid_bent_and_framed():
     assert np.ptp(result.values.uv[inside]) > 0.5
 
 
-def test_shapes_bend_along_the_field_unless_they_fill_the_surface():
+def test_shapes_bend_along_the_field():
     bent = run(preset("FEATHERS"), bend=True, make_outlines=True, options={"field": panel()})
     straight = run(preset("FEATHERS"), make_outlines=True, options={"field": panel()})
     assert bent.class_counts.sum() >= 50
     assert not np.array_equal(bent.outlines.points[:50], straight.outlines.points[:50])
     assert run(preset("FEATHERS"), bend=True, count=20).class_counts.sum() == 20  # along the smoothest field
-    full = run(preset("FEATHERS"), bend=True, maximal=True, size=0.3)
-    assert full.lines[-1].startswith("Proved full")
+    fill = {"maximal": True, "size": 0.3, "make_outlines": True}
+    full, stiff = (run(preset("FEATHERS"), bend=bend, **fill) for bend in (True, False))
+    assert full.lines[-1].startswith("Proved full") and not full.warnings
+    assert full.outlines.points.shape != stiff.outlines.points.shape
 
 
 def test_mirrored_copies_face_outwards_too():

@@ -371,12 +371,12 @@ def nothing_more_fits(rng: Random) -> None:
     shapes = [sb.Shape(regular(int(rng.integers(3, 7)), 1.0)) for _ in range(int(rng.integers(1, 3)))]
     sizes, turns = rng.uniform(0.1, 0.3, len(shapes)), rng.uniform(0, 7, len(shapes))
     fields = [field.turned(float(turn)) for turn in turns]
-    density = None
+    density, bend = None, bool(rng.random() < 0.3)  # of straight curves
     if rng.random() < 0.5:
         density = rng.random((len(shapes), surface.mesh.vertex_count)) * (rng.random(surface.mesh.vertex_count) < 0.3)
         density[:, int(rng.integers(surface.mesh.vertex_count))] = 1
     laid = sb.distribute(
-        surface.mesh, shapes, None, fields, density, size=sizes, maximal=True, tolerance=0.05, threads=1
+        surface.mesh, shapes, None, fields, density, size=sizes, bend=bend, maximal=True, tolerance=0.05, threads=1
     )
 
     def wanted(which: int, points: sb.SurfacePoints, i: int) -> bool:
@@ -410,6 +410,51 @@ def nothing_more_fits(rng: Random) -> None:
             overlap([tried], loops[k]) or least_distance([tried], loops[k]) < proof.tolerance + ROUNDING for k in near
         )
         assert meets, f"another one fits at {center.tolist()}"
+
+
+def about_circle(loop: Floats, radius: float, place: Floats) -> Floats:
+    """An outline of a shape's plane laid along a circle about the origin that runs counter-clockwise through a place:
+    what is left of the curve is nearer to the origin.
+    """
+    ways = np.linspace(0, 1, 16, endpoint=False)[:, None, None]
+    x, y = (loop + ways * (np.roll(loop, -1, axis=0) - loop)).transpose(1, 0, 2).reshape(-1, 2).T
+    angle = np.arctan2(place[1], place[0]) + x / radius
+    return np.asarray((radius - y)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
+
+
+@guards("Certificate", "distribute", on="nothing")
+def nothing_more_fits_along_circles(rng: Random) -> None:
+    """Copies that bend along circles in the plane: none meets another, and where a certificate says that nothing more
+    fits, those laid at random, larger by a tenth, meet one or the border. All by the polar coordinates that they have.
+    """
+    mesh = sb.Mesh(*meshes.grid(31, 31))
+    beyond = rng.uniform(0.6, 2)  # so far that curves through copies are no tighter than they can follow
+    middle = np.array([rng.uniform(-0.3, 1.3), rng.choice([-beyond, 1 + beyond])])
+    away = mesh.vertices[mesh.triangles].mean(axis=1)[:, :2] - middle
+    field = sb.DirectionField.from_vectors(mesh, np.column_stack([-away[:, 1], away[:, 0], 0 * away[:, 0]]), 1)
+    loop = regular(int(rng.integers(3, 7)), 1.0) * (1, rng.uniform(0.3, 1))
+    size = float(rng.uniform(0.1, 0.2))
+    laid = sb.distribute(
+        mesh, sb.Shape(loop), None, field, size=size, bend=True, maximal=True, tolerance=0.02, threads=1
+    )
+
+    def copy(place: Floats, scale: float) -> Floats:
+        return middle + about_circle(scale * loop, float(np.linalg.norm(place - middle)), place - middle)
+
+    centers = laid.placements.center.positions(mesh)[:, :2]
+    copies, smaller = ([copy(center, size * share) for center in centers] for share in (1, 0.98))
+    for i in range(len(copies)):
+        for k in range(i):
+            if np.linalg.norm(centers[i] - centers[k]) < 2 * size:
+                assert not overlap([smaller[i]], [smaller[k]]), f"copies {k} and {i} meet"
+    if laid.stop_reason != "full" or laid.certificate is None or laid.certificate.uncertified_area > 0:
+        return
+    for center in rng.random((60, 2)):
+        tried = copy(center, size * 1.1)
+        if min(tried.min(), (1 - tried).min()) < 0:
+            continue
+        near = np.flatnonzero(np.hypot(*(centers - center).T) < 2.2 * size).tolist()
+        assert any(overlap([tried], [copies[k]]) for k in near), f"another one fits at {center.tolist()}"
 
 
 @guards("density_match", "DensityMatch", on="nothing")

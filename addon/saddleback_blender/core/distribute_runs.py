@@ -132,10 +132,7 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     parts = [footprints(template.parts, overlap, THIN if settings.no_crossings else ROUND) for template in templates]
     shapes = [sb.Shape(*[list(part) for part in outlines]) for outlines in parts]
     field = _field(request, mesh, progress, cache)
-    bends = settings.bend and not settings.maximal
-    if settings.bend and settings.maximal:
-        progress.note("Shapes that fill the surface do not bend along the field")
-    if bends and field is None:
+    if settings.bend and field is None:
         with progress.stage(0.2, "making a field to bend along") as job:
             field = MadeField(sb.direction_field(mesh, 2, job=job), 0)
 
@@ -153,7 +150,7 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         "gap": settings.gap,
         "mode": settings.packing,
         "mirror": settings.mirror,
-        "bend": bends,
+        "bend": settings.bend,
         "maximal": settings.maximal,
         "seed": settings.seed,
         "shares": None if settings.maximal else [template.share for template in templates],

@@ -72,7 +72,7 @@ DISTRIBUTE: dict[str, Any] = {
     ),
     "maximal": switch("Fill", "Go on until nothing more fits, whatever the count, and prove it", False),
     "mirror": switch("Mirror", "Mirror half of the shapes, by chance", False),
-    "bend": switch("Bend", "Long shapes bend along the field; not with Fill", False),
+    "bend": switch("Bend", "Long shapes bend along the field", False),
     "seed": TESSELLATE["seed"],
     "field_source": choice("Field", "Which way shapes point", FIELD_SOURCES, "PANEL"),
     "direction_attribute": name_of("Attribute", "The vectors that shapes point along", "saddleback_direction"),

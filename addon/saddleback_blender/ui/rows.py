@@ -377,9 +377,7 @@ def draw_shapes_advanced(layout: bpy.types.UILayout, settings: Any, item: bpy.ty
     row.prop(settings, "no_crossings")
     layout.prop(settings, "maximal")
     layout.prop(settings, "mirror")
-    row = layout.row()
-    row.active = not settings.maximal
-    row.prop(settings, "bend")
+    layout.prop(settings, "bend")
     layout.prop(settings, "seed")
     layout.prop(settings, "field_source")
     if settings.field_source == "ATTRIBUTE":

@@ -4607,7 +4607,7 @@ def distribute(
             asked.
         mirror: half of the copies are mirrored, at random.
         bend: copies bend along the field's curves, as `map_shapes` lays them when given the field: for long shapes. Needs a
-            field; not with maximal.
+            field.
         tolerance: clearance of the proof, as a share of the circumradius, and half of the gap, of the smallest copy of a kind
             that might lie there.
         threads: 0: all cores. The result is the same for any number.
@@ -4618,8 +4618,7 @@ def distribute(
 
     Raises:
         InputError: naming the argument: no shape; counts of another number than shapes, or negative; shares of another number,
-            negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field
-            or with maximal;
+            negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field;
             sizes or density of the wrong length, not finite or not positive; fields, sizes or densities of another number
             than shapes; copies around which to lay that meet each other or do not fit where they are; density zero everywhere,
             or without counts or maximal; a copy larger than the surface, alone or with half of the gap around; everything forbidden.

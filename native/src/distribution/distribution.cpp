@@ -154,8 +154,6 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
   if (!options.forbidden.empty() &&
       std::all_of(options.forbidden.begin(), options.forbidden.end(), [](std::uint8_t v) { return v != 0; }))
     throw InputError("forbidden: no face is left for a shape");
-  if (options.bend && options.maximal)
-    throw InputError("bend: that nothing more fits is proved for copies that do not bend; leave maximal out");
   if (!(options.packing >= 0 && options.packing <= 1))
     throw InputError(message("packing is ", options.packing, ", but must be 0 to 1"));
   if (!(options.tolerance >= 0.001 && options.tolerance <= 0.5))

@@ -150,13 +150,16 @@ void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
     attempt.outcome = Outcome::collision;
   if (attempt.outcome != Outcome::laid) return;
   const ShapeMap& plane = mapper.plane();
+  // Along a curve that the copy does not point along its plane is turned.
+  const auto place_of = [&](Index vertex) -> Vec2 {
+    return line ? Vec2(placement.scale * mapper.given(plane.coordinates(vertex))) : plane.coordinates(vertex);
+  };
   attempt.plane.clear();
-  for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, plane.coordinates(vertex)});
+  for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, place_of(vertex)});
   attempt.faces.clear();
   for (const Index face : attempt.outline.faces) {
     const Triangle& corners = mesh_->triangles()[face];
-    const Vec2& origin = plane.coordinates(corners[0]);
-    const Vec2 e1 = plane.coordinates(corners[1]) - origin, e2 = plane.coordinates(corners[2]) - origin;
+    const Vec2 origin = place_of(corners[0]), e1 = place_of(corners[1]) - origin, e2 = place_of(corners[2]) - origin;
     attempt.faces.push_back({face, origin, rules_->flat().turn_to(face, e1, e2)});
   }
 }
@@ -175,7 +178,7 @@ void Insertion::commit(Attempt& attempt) {
     attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
     const auto number = static_cast<Index>(settled_.copies().size());
     settled_.add(attempt.copy, attempt.outline);
-    settled_.add_places(number, attempt.faces);
+    settled_.add_places(number, attempt.faces, true);
     pending_.push_back({number, std::move(attempt.plane), attempt.outline.faces});
     ++inserted_[attempt.copy.placement.shape];
     ++inserted_in_all_;
@@ -216,7 +219,7 @@ void Insertion::make_pending_known() {
       const Pending& pending = pending_[begin + i];
       places[i] = surroundings->about(pending.plane, pending.faces, settled_.reach(settled_.copies()[pending.copy]));
     });
-    for (Index i = 0; i < count; ++i) settled_.add_places(pending_[begin + i].copy, places[i]);
+    for (Index i = 0; i < count; ++i) settled_.add_places(pending_[begin + i].copy, places[i], false);
   }
   pending_.clear();
 }

@@ -14,6 +14,7 @@
 
 #include "saddleback/mesh/trace.h"
 
+#include "distribution/bent_cell.h"
 #include "distribution/edge_distances.h"
 #include "mesh/tables/hilbert.h"
 #include "mesh/tables/key_order.h"
@@ -48,6 +49,8 @@ constexpr std::size_t k_drops_held = 4'000'000, k_most_cells = 1 << 20;
 constexpr double k_unproven = 0.5;
 /// Cells smaller than this share of that square get fewer darts.
 constexpr double k_dart_area = 0.05, k_free_area = 0.006;  ///< the second where the center seems free
+/// Lengths on a copy that bends are no more than so many times longer or shorter than in its plane, see MapLimits.
+constexpr double k_most_stretch = 2;
 /// Disks looked at before all of them are: the largest, which tell most cells.
 constexpr std::size_t k_first_disks = 6;
 
@@ -393,14 +396,17 @@ std::uint64_t MaximalSampling::centrally_covered(const Cell& cell, const CellVie
     const auto kind = static_cast<Index>(std::countr_zero(rest));
     const double size = rules_->size_at(rules_->kinds()[kind].shape, cell.face, cell.center());
     inradii[kind] = rules_->smallest_factor() * size * rules_->inradius(kind);
+    if (proves_bent()) inradii[kind] /= k_most_stretch;
     largest = std::max(largest, inradii[kind]);
   }
   std::uint64_t covered = 0;
   for (const Neighbor& neighbor : near) {
     if (neighbor.away > largest) break;
     const Copy& there = insertion_->settled().copies()[neighbor.copy];
-    const Vec2 place = (neighbor.origin + neighbor.turn * view.place) / there.placement.scale;
-    const double distance = there.placement.scale * there.body->distance.upper(place);
+    Vec2 place = neighbor.origin + neighbor.turn * view.place;
+    if (proves_bent() && !insertion_->settled().place_within(neighbor.copy, view.center, place)) continue;
+    double distance = there.placement.scale * there.body->distance.upper(place / there.placement.scale);
+    if (proves_bent()) distance *= distance > 0 ? k_most_stretch : 1 - there.bend;
     for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
       const auto kind = static_cast<Index>(std::countr_zero(rest));
       if (inradii[kind] - view.radius > distance) covered |= std::uint64_t{1} << kind;
@@ -441,23 +447,43 @@ void MaximalSampling::look(const OpenCell& open, Index number, Neighbors& near, 
     const Kind& what = rules_->kinds()[kind];
     if (!insertion_->is_wanted(what.shape)) continue;
     rules_->see(open.cell, what.shape, view);
-    const Motion motion = rules_->motion(view, rules_->smallest_factor());
     const Copy copy = rules_->copy(kind, view.center, view.angle, rules_->smallest_factor() * view.size);
-    if (is_covered(view, copy, motion, near)) continue;
     const double least = tolerance(view, what);
-    if (motion.base + motion.per_length * copy.body->shape.circumradius() > least) {
+    const Cover cover = proves_bent() ? bent_cover(open.cell, view, kind, copy, least) : this->cover(view, copy, near);
+    if (cover.is_whole) continue;
+    const std::uint64_t bit = std::uint64_t{1} << kind;
+    if (cover.motion > least) {
       if (view.radius < 0.25 * least || open.cell.level >= k_most_levels)
         look.is_lost = true;
       else
-        look.open |= std::uint64_t{1} << kind;
-      if (!is_covered(view, copy, {}, near)) look.free |= std::uint64_t{1} << kind;
-    } else if (open.tried.is(kind, Outcome::collision) || is_covered(view, copy, {}, near)) {
+        look.open |= bit;
+      if (!cover.is_central) look.free |= bit;
+    } else if (open.tried.is(kind, Outcome::collision) || cover.is_central) {
       ++look.leaves;
     } else {
-      look.asked |= std::uint64_t{1} << kind;
+      look.asked |= bit;
     }
   }
   if (look.open) throw_dart(open, view, number, look);
+}
+
+MaximalSampling::Cover MaximalSampling::cover(const CellView& view, const Copy& copy, const Neighbors& near) const {
+  const Motion motion = rules_->motion(view, rules_->smallest_factor());
+  if (is_covered(view, copy, motion, near)) return {.is_whole = true};
+  return {.is_central = is_covered(view, copy, {}, near),
+          .motion = motion.base + motion.per_length * copy.body->shape.circumradius()};
+}
+
+MaximalSampling::Cover MaximalSampling::bent_cover(const Cell& cell, const CellView& view, Index kind, const Copy& copy,
+                                                   double tolerance) const {
+  BentCell copies(*rules_, insertion_->settled(), cell, kind, copy);
+  Cover cover;
+  cover.is_whole = copies.is_covered(view.radius, cover.is_central) ||
+                   (!near_border_.empty() && near_border_[cell.face] &&
+                    copies.is_beyond_border(options_->forbidden, forbidden_depth_, cover.is_central));
+  // The center itself moves by the cell's radius.
+  if (!cover.is_whole) cover.motion = view.radius > tolerance ? view.radius : copies.motion();
+  return cover;
 }
 
 /// Finds the rims of places where shapes cannot be laid less finely where many candidates fell on such places.

@@ -56,6 +56,8 @@ class MaximalSampling {
   void flag_borders();
   /// Copies that are wanted by number are looked for where the sample_at_random has missed the room.
   bool searches() const { return options_->maximal || !options_->counts.empty(); }
+  /// How copies bend counts where a proof is wanted; to look for room they are near enough to straight ones.
+  bool proves_bent() const { return options_->maximal && options_->bend; }
   void weigh_kinds();
   DistributionStop sample_at_random(const JobStage& stage);
   double weight_at(Index kind, const SurfacePoint& point) const {
@@ -84,6 +86,14 @@ class MaximalSampling {
   void throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const;
   std::uint64_t centrally_covered(const Cell& cell, const CellView& view, std::uint64_t kinds,
                                   const Neighbors& near) const;
+  /// Says what is known of all placements of a kind in a cell.
+  struct Cover {
+    bool is_whole = false;    ///< each meets a copy, or the border
+    bool is_central = false;  ///< the one at the center does
+    double motion = 0;        ///< by how much they differ
+  };
+  Cover cover(const CellView& view, const Copy& copy, const Neighbors& near) const;
+  Cover bent_cover(const Cell& cell, const CellView& view, Index kind, const Copy& copy, double tolerance) const;
   bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbors& near) const;
   bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found, const Pose& pose,

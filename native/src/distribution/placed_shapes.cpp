@@ -64,11 +64,9 @@ bool PlacedShapes::meets(const OutlinePiece& piece) const {
 }
 
 bool PlacedShapes::is_within_another(const OutlinePiece& piece) const {
-  const Vec2 point = flat_->place(piece.face, piece.begin);
-  return visit(piece.face, piece.begin, 0, [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
+  return visit_touching(piece.face, piece.begin, [&](Index other, const Vec2& place) {
     const Copy& copy = copies_[other];
-    const Vec2 place = (origin + turn * point) / copy.placement.scale;
-    return copy.body->distance.exact(place) < k_rounding * copy.body->shape.circumradius();
+    return copy.body->distance.exact(place / copy.placement.scale) < k_rounding * copy.body->shape.circumradius();
   });
 }
 
@@ -100,13 +98,13 @@ void PlacedShapes::add(const Copy& copy, const SurfaceOutline& outline) {
     });
 }
 
-void PlacedShapes::add_place(const FacePlace& place, Index copy, Index& head) {
+void PlacedShapes::add_place(const FacePlace& place, Index number, Index& head) {
   if (place_count_ % k_block == 0) places_.push_back(std::make_unique_for_overwrite<Place[]>(k_block));
-  places_.back()[place_count_ % k_block] = {place.turn.cast<float>(), place.origin.cast<float>(), copy, head};
+  places_.back()[place_count_ % k_block] = {place.turn.cast<float>(), place.origin.cast<float>(), number, head};
   head = place_count_++;
 }
 
-void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places) {
+void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places, bool are_touched) {
   const double radius = copies_[copy].radius();
   for (const FacePlace& place : places) {
     const Vec2 e1 = place.turn * flat_->place(place.face, {1, 0}), e2 = place.turn * flat_->place(place.face, {0, 1});
@@ -116,7 +114,7 @@ void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places) 
       const double away = (place.origin + middle.x() * e1 + middle.y() * e2).norm() - share * (e1.norm() + e2.norm());
       if (away > radius + reach_) return;
       Index& head = place_heads_[static_cast<std::size_t>(bucket) * rings_ + ring_of(away - radius)];
-      add_place(place, copy, head);
+      add_place(place, are_touched ? ~copy : copy, head);
     });
   }
 }

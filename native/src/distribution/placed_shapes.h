@@ -42,8 +42,8 @@ class PlacedShapes {
 
   /// Returns how far from its center a copy can be met.
   double reach(const Copy& copy) const { return copy.radius() + reach_; }
-  /// Makes known for the copy of this number where faces lie about it.
-  void add_places(Index copy, const std::vector<FacePlace>& places);
+  /// Makes known for the copy of this number where faces lie about it, or those that it touches.
+  void add_places(Index copy, const std::vector<FacePlace>& places, bool are_touched);
 
   /// Calls visit(copy number, FacePlace's origin and turn) for copies that something of the circumradius `reach` about
   /// the point may meet, until it gives true; then returns true.
@@ -53,9 +53,31 @@ class PlacedShapes {
     const int last = ring_of(reach);
     for (int ring = 0; ring <= last; ++ring)
       for (Index i = heads[ring]; i != k_none; i = place(i).next)
-        if (visit(place(i).copy, place(i).origin.template cast<double>(), place(i).turn.template cast<double>()))
+        if (visit(place(i).copy(), place(i).origin.template cast<double>(), place(i).turn.template cast<double>()))
           return true;
     return false;
+  }
+
+  /// Calls visit(copy number, place in its plane) for copies that touch the point's face, until it gives true; then
+  /// returns true. Elsewhere a plane may cover the surface twice: what seems to lie within the copy is somewhere else.
+  template <class Visit>
+  bool visit_touching(Index face, const Vec2& weights, Visit&& visit) const {
+    const Vec2 in_face = flat_->place(face, weights);
+    for (Index i = place_heads_[static_cast<std::size_t>(buckets_.at(face, weights)) * rings_]; i != k_none;
+         i = place(i).next) {
+      const Place& at = place(i);
+      if (at.number < 0 && visit(at.copy(), Vec2(at.origin.cast<double>() + at.turn.cast<double>() * in_face)))
+        return true;
+    }
+    return false;
+  }
+  /// Finds the place in the plane of one copy.
+  bool place_within(Index copy, const SurfacePoint& point, Vec2& found) const {
+    return visit_touching(point.face, {point.barycentric[1], point.barycentric[2]},
+                          [&](Index number, const Vec2& place) {
+                            found = place;
+                            return number == copy;
+                          });
   }
 
  private:
@@ -67,7 +89,8 @@ class PlacedShapes {
   struct Place {
     Eigen::Matrix2f turn;
     Eigen::Vector2f origin;
-    Index copy, next;
+    Index number, next;  ///< of the copy, ~number where it touches the face
+    Index copy() const { return number < 0 ? ~number : number; }
   };
   static constexpr Index k_block = 1 << 15;
   struct Start {
@@ -86,7 +109,7 @@ class PlacedShapes {
     return ring;
   }
   const Place& place(Index i) const { return places_[static_cast<std::size_t>(i / k_block)][i % k_block]; }
-  void add_place(const FacePlace& place, Index copy, Index& head);
+  void add_place(const FacePlace& place, Index number, Index& head);
   bool meets(const OutlinePiece& piece) const;
   bool is_within_another(const OutlinePiece& piece) const;
   bool holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;

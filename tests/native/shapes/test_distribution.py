@@ -70,6 +70,42 @@ def same(a: sb.Distribution, b: sb.Distribution) -> bool:
     )
 
 
+def at(points: sb.SurfacePoints, i: int) -> sb.SurfacePoints:
+    return sb.SurfacePoints(points.faces[[i]], points.barycentric[[i]])
+
+
+def angle_in_face(mesh: sb.Mesh, field: sb.DirectionField, point: sb.SurfacePoints) -> float:
+    """The angle of a field's direction, as placements have it."""
+    corners = mesh.vertices[mesh.triangles[point.faces[0]]]
+    first = corners[1] - corners[0]
+    normal = np.cross(first, corners[2] - corners[0])
+    ahead = field.directions(point)[0]
+    return float(np.arctan2(np.cross(normal, first) @ ahead / np.linalg.norm(normal), first @ ahead))
+
+
+def fits(
+    result: sb.Distribution, shape: int, point: sb.SurfacePoints, field: sb.DirectionField, larger: float
+) -> bool | None:
+    """Whether another copy of a class, turned as the field says and larger by a share, fits among those that lie there;
+    None where it cannot be laid at all.
+    """
+    mesh, laid = result.mesh, result.placements
+    size = laid.scale[laid.shape == shape][0]
+    away = np.linalg.norm(laid.center.positions(mesh) - point.positions(mesh), axis=1)
+    laid = laid[away < 1.2 * (size + laid.scale.max())]  # the circumradii are 1
+    among = sb.Placements(
+        np.append(laid.shape, shape),
+        sb.SurfacePoints(
+            np.append(laid.center.faces, point.faces), np.vstack([laid.center.barycentric, point.barycentric])
+        ),
+        np.append(laid.angle, angle_in_face(mesh, field, point)),
+        np.append(laid.scale, (1 + larger) * size),
+        np.append(laid.mirrored, False),
+    )
+    mapped = sb.map_shapes(mesh, result.shapes, among, result.field)
+    return None if mapped.failures else bool(sb.check_distribution(mesh, mapped, samples=1).ok)
+
+
 @pytest.mark.parametrize(
     ("shape", "mode", "turning"),
     [(STAR, "random", True), (NEEDLE, "packed", False), (CRESCENT, 0.5, True), (FRAME, "random", False)],
@@ -285,6 +321,58 @@ def test_long_copies_bend_along_the_field() -> None:
     assert straight.field is None and not sb.check_distribution(mesh, bent, samples=10_000).ok
 
 
+@functools.cache
+def waves() -> tuple[sb.Mesh, sb.DirectionField]:
+    """A plane with a field that turns to and fro."""
+    mesh = sb.Mesh(*meshes.grid(61, 61))
+    x, y, _ = mesh.vertices[mesh.triangles].mean(axis=1).T
+    turn = 2.5 * np.sin(9 * x) + np.cos(7 * y + x)
+    return mesh, sb.DirectionField.from_vectors(mesh, np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]), 1)
+
+
+@functools.cache
+def whirl() -> tuple[sb.Mesh, sb.DirectionField]:
+    """A plane with a field that runs about a point."""
+    mesh = sb.Mesh(*meshes.grid(61, 61))
+    x, y, z = (mesh.vertices[mesh.triangles].mean(axis=1) - [0.5, 0.45, 0]).T
+    return mesh, sb.DirectionField.from_vectors(mesh, np.column_stack([-y, x, z]), 1)
+
+
+@pytest.mark.parametrize(
+    ("surface", "shape", "size", "options"),
+    [
+        (ring, sb.Shape.leaf(3), 0.2, {}),
+        (ring, sb.Shape.needle(5), 0.4, {"tolerance": 0.05}),
+        (waves, sb.Shape.needle(6), 0.15, {}),
+        (whirl, CRESCENT, 0.09, {"mode": "packed", "mirror": True}),
+        (whirl, FRAME, 0.1, {"gap": 0.01}),
+    ],
+    ids=["ring", "needles", "waves", "whirl", "frames"],
+)
+def test_nothing_more_fits_where_copies_bend(surface, shape, size, options) -> None:
+    mesh, field = surface()
+    result = sb.distribute(mesh, shape, field=field, size=size, bend=True, maximal=True, **options)
+    assert result.stop_reason == "full" and result.certificate.uncertified_area < 0.01 * mesh.area
+    assert sb.check_distribution(mesh, result, samples=1000).ok
+    points = sb.sample(mesh, 300, seed=2)
+    if "gap" not in options:
+        told = [fits(result, 0, at(points, i), field, 0.06) for i in range(300)]
+        assert told.count(False) > 150 and told.count(True) == 0
+    assert len(result) >= len(sb.distribute(mesh, shape, 10_000, field, size=size, bend=True, **options))
+    assert same(
+        result, sb.distribute(mesh, shape, field=field, size=size, bend=True, maximal=True, threads=1, **options)
+    )
+
+
+def test_copies_within_others_that_point_across_the_field_are_seen() -> None:
+    mesh, field = waves()
+    center = sb.project(mesh, [[0.5, 0.5, 0]])
+    across = sb.Placements([0], center, [angle_in_face(mesh, field, center) + 1.3], [0.2])
+    shapes = [sb.Shape.needle(2), DISK]
+    result = sb.distribute(mesh, shapes, [1, 3000], field, size=[0.2, 0.004], bend=True, around=across)
+    assert len(result) > 1000 and sb.check_distribution(mesh, result, samples=100_000).ok
+
+
 def test_placement_files_keep_what_copies_bend_along(tmp_path) -> None:
     mesh, field = plane(True)
     result = sb.distribute(mesh, NEEDLE, 20, field, size=0.1, bend=True)
@@ -498,7 +586,6 @@ REFUSED = {
     "shares and maximal": ({"shares": [1], "maximal": True}, "shares: a surface that is full"),
     "shares and counts": ({"shapes": [STAR, DISK], "shares": [1, 1], "counts": [1, 1]}, "counts has a value"),
     "bend without a field": ({"bend": True, "field": None}, "bend: wanted a field"),
-    "bend and maximal": ({"bend": True, "maximal": True}, "bend: that nothing more fits"),
     "size of another length": ({"size": [1.0, 2.0]}, "size has 2 values"),
     "size zero": ({"size": 0.0}, "size is 0"),
     "larger than the surface": ({"size": 100.0}, "larger than the surface"),

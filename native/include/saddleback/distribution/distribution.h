@@ -45,7 +45,7 @@ struct DistributionOptions {
   double packing = 0;
   bool mirror = false;  ///< half of the copies are mirrored, at random
   /// Copies bend along the field: they are laid along its curves (see center_line), as map_shapes lays them when given
-  /// the field. Needs a field, and is not for maximal.
+  /// the field. Needs a field.
   bool bend = false;
   /// Goes on until nothing more fits wherever a shape's density is positive, and proves it: see Certificate.
   bool maximal = false;
@@ -76,12 +76,13 @@ inline constexpr std::size_t k_rejection_count = 5;
 /// A proof that nothing more fits. The surface is cut into cells, for each shape where its density is positive. Of each
 /// cell either all placements centered in it meet a copy that lies there, or its center's does and no placement
 /// centered in it differs by more than `tolerance`. So whatever is laid there comes nearer to a copy than the
-/// tolerance.
+/// tolerance. Placements that bend differ as those at the cell's corners do and a fifth more: curves of a field do not
+/// cross.
 struct Certificate {
   double tolerance = 0;  ///< mesh units; 0 without a certificate
   std::int64_t cells = 0, leaves = 0;
-  /// Area of the cells for which this could not be decided: around singularities of the field, and where the surface
-  /// bends too much for the shapes.
+  /// Area of the cells for which this could not be decided: around singularities of the field, where copies that bend
+  /// along its curves part, and where the surface bends too much for the shapes.
   double uncertified_area = 0;
   SurfacePoints uncertified;  ///< centers of those cells
 };
@@ -104,7 +105,7 @@ struct DistributionResult {
 /// or zero everywhere); a range of sizes that is none; a copy larger than the surface, alone or with half of the gap
 /// around; a negative gap; packing outside 0 to 1; a tolerance outside 0.001 to 0.5; copies to lay around that meet
 /// each other, or do not fit where they are; shares of another number than shapes, negative, all zero, or with maximal;
-/// bend without a field or with maximal; a density without counts or maximal; everything forbidden. Cancelled.
+/// bend without a field; a density without counts or maximal; everything forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 
