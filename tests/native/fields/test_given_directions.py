@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -175,3 +177,19 @@ def test_bad_directions_are_told() -> None:
         for symmetry, singularities in ((1, None), (4, {})):
             with pytest.raises(sb.InputError, match=message):
                 sb.direction_field(mesh, symmetry, singularities, directions=arguments[0], weights=arguments[1])
+
+
+def test_triangles_with_right_and_obtuse_angles_take_no_longer() -> None:
+    """Over the longest edges of such triangles directions hardly turn: to the solver pairs of them are one."""
+    vertices, triangles = meshes.grid(200, 200)
+    sheared = vertices + np.outer(0.5 * np.sin(6 * vertices[:, 1]), [1, 0, 0])
+    given = np.arange(len(triangles)) % 997 == 0
+
+    def seconds(mesh: sb.Mesh) -> float:
+        directions = np.where(given[:, None], mesh.vertices[triangles[:, 1]] - mesh.vertices[triangles[:, 0]], 0.0)
+        begin = time.thread_time()
+        sb.direction_field(mesh, 2, directions=directions, weights=given.astype(float))
+        return time.thread_time() - begin
+
+    plain, other = (min(seconds(sb.Mesh(places, triangles)) for _ in range(3)) for places in (vertices, sheared))
+    assert other < 2 * plain  # with pairs that others had broken up it took three times as long

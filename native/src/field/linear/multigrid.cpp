@@ -14,6 +14,9 @@ namespace {
 constexpr Index k_coarsest = 120;         // nodes that a dense inverse is cheap for
 constexpr double k_dominant = 10;         // a diagonal larger than this many times its row needs no coarse correction
 constexpr double k_stronger = 1 + 1e-9;   // many are equal but for rounding, which must not say who pairs with whom
+constexpr double k_weak = 0.5;            // of a node's strongest tie: others say nothing of how it varies
+constexpr double k_stalled = 0.9;         // of the nodes left by pairing: weak ties are taken then
+constexpr double k_loosest = 4;           // see is_too_loose; 8 in [napov2012]
 constexpr double k_enough = 0.25;         // the K-cycle's second step is left out when the first one gains this much
 constexpr Index k_nodes_a_check = 32768;  // about a millisecond between looks at the job
 
@@ -30,17 +33,43 @@ double transported(double) { return 1; }
 std::complex<double> transported(const std::complex<double>& entry) { return -std::conj(entry) / std::abs(entry); }
 
 template <class Scalar>
-bool needs_no_correction(const GraphMatrix<Scalar>& matrix, Index i) {
-  double row = 0;
-  for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) row += std::abs(matrix.values[k]);
-  return matrix.diagonal[i] >= k_dominant * row;
+double sum_of_ties(const GraphMatrix<Scalar>& matrix, Index i) {
+  double sum = 0;
+  for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) sum += std::abs(matrix.values[k]);
+  return sum;
 }
 
-/// Each node with the free neighbor that it is tied to most; those without one join the strongest neighbor's pair.
 template <class Scalar>
-Aggregates<Scalar> pair_up(const GraphMatrix<Scalar>& matrix, const JobStage& stage) {
+bool needs_no_correction(const GraphMatrix<Scalar>& matrix, Index i) {
+  return matrix.diagonal[i] >= k_dominant * sum_of_ties(matrix, i);
+}
+
+/// Tells whether Gauss-Seidel on the finer level, on which two nodes have these sums of ties, evens them out so slowly
+/// that they must stay apart: two triangles that are tied firmly move together, and their neighbors hardly move them.
+/// After the quality of aggregates [napov2012].
+bool is_too_loose(double tie, double of_one, double of_other) {
+  return of_one * of_other > k_loosest * tie * (of_one + of_other);
+}
+
+template <class Scalar>
+double strongest_tie(const GraphMatrix<Scalar>& matrix, Index i) {
+  double most = 0;
+  for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k)
+    most = std::max(most, double(std::abs(matrix.values[k])));
+  return most;
+}
+
+/// Each node with the free neighbor that it is tied to most, unless either is tied much more to others: who takes a
+/// neighbor from its partner leaves that one to take another's, and so on all over the mesh. Those without one join the
+/// strongest neighbor's pair. Ties below `weak` of a node's strongest count for nothing. `finer`: sums of the ties that
+/// each has on a finer level, to compare with; zeros: pairs may be tied loosely.
+template <class Scalar>
+Aggregates<Scalar> pair_up(const GraphMatrix<Scalar>& matrix, const std::vector<double>& finer, double weak,
+                           const JobStage& stage) {
   constexpr Index k_free = -2;
   Aggregates<Scalar> result{std::vector<Index>(matrix.size(), k_free), std::vector<Scalar>(matrix.size(), Scalar(1))};
+  std::vector<double> strongest(matrix.size()), whole;  // `finer` of each aggregate
+  for (Index i = 0; i < matrix.size(); ++i) strongest[i] = strongest_tie(matrix, i);
   for (Index i = 0; i < matrix.size(); ++i) {
     if (i % k_nodes_a_check == 0) stage.check();
     if (result.of[i] != k_free) continue;
@@ -50,21 +79,30 @@ Aggregates<Scalar> pair_up(const GraphMatrix<Scalar>& matrix, const JobStage& st
     }
     Index free = k_none, joined = k_none;
     for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
-      const Index state = result.of[matrix.columns[k]];
+      const Index j = matrix.columns[k];
       const double strength = std::abs(matrix.values[k]);
-      if (state == k_free && (free == k_none || strength > k_stronger * std::abs(matrix.values[free]))) free = k;
-      if (state >= 0 && (joined == k_none || strength > k_stronger * std::abs(matrix.values[joined]))) joined = k;
+      if (strength < weak * strongest[i]) continue;
+      if (is_too_loose(strength, finer[i], result.of[j] >= 0 ? whole[result.of[j]] : finer[j])) continue;
+      const auto beats = [&](Index other) {
+        return other == k_none || strength > k_stronger * std::abs(matrix.values[other]);
+      };
+      if (result.of[j] == k_free && strength >= weak * strongest[j] && beats(free) && !needs_no_correction(matrix, j))
+        free = k;
+      if (result.of[j] >= 0 && beats(joined)) joined = k;
     }
-    if (free != k_none && !needs_no_correction(matrix, matrix.columns[free])) {
+    if (free != k_none) {
       const Index j = matrix.columns[free];
       result.of[i] = result.of[j] = result.count++;
       result.phase[j] = transported(matrix.values[free]);
+      whole.push_back(finer[i] + finer[j]);
     } else if (joined != k_none) {
       const Index j = matrix.columns[joined];
       result.of[i] = result.of[j];
+      whole[result.of[i]] += finer[i];
       result.phase[i] = times(result.phase[j], Scalar(conjugate(transported(matrix.values[joined]))));
     } else {
       result.of[i] = result.count++;
+      whole.push_back(finer[i]);
     }
   }
   return result;
@@ -184,9 +222,14 @@ void MultigridSolver<Scalar>::coarsen(const JobStage& stage) {
   while (true) {
     levels_.push_back(make_level(*matrix, stage));
     if (matrix->size() <= k_coarsest) break;
-    Aggregates<Scalar> aggregates = pair_up(*matrix, stage);
+    const std::vector<double> any(matrix->size(), 0.0);
+    Aggregates<Scalar> aggregates = pair_up(*matrix, any, k_weak, stage);
+    if (aggregates.count > k_stalled * matrix->size()) aggregates = pair_up(*matrix, any, 0, stage);
     GraphMatrix<Scalar> coarse = galerkin(*matrix, aggregates, stage);
-    const Aggregates<Scalar> second = pair_up(coarse, stage);
+    std::vector<double> ties(aggregates.count, 0.0);
+    for (Index i = 0; i < matrix->size(); ++i)
+      if (aggregates.of[i] >= 0) ties[aggregates.of[i]] += sum_of_ties(*matrix, i);
+    const Aggregates<Scalar> second = pair_up(coarse, ties, k_weak, stage);
     coarse = galerkin(coarse, second, stage);
     append_step(aggregates, second);
     levels_.back().aggregate = std::move(aggregates.of);
