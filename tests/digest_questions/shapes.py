@@ -110,3 +110,13 @@ def distribution_field(case: meshes.Case, way: Way) -> Iterable[object]:
     )
     proof = all_of(full.certificate, "tolerance cells leaves uncertified_area")
     return [*placements_of(made.placements), *placements_of(full.placements), *proof]
+
+
+@asked(COVERED, painted={}, bent={"bend": True})
+def distribution_full(case: meshes.Case, way: Way, **options: Any) -> Iterable[object]:
+    along, density = sb.direction_field(case.mesh, 2), density_of(case)
+    made = sb.distribute(
+        case.mesh, [PRESETS["leaf"], PRESETS["disk"]], field=along, size=0.15 * case.mesh.area**0.5, maximal=True,
+        density=[density, np.maximum(0, density.max() - 2 * density)], tolerance=0.1, threads=way.threads, **options,
+    )  # fmt: skip
+    return [*placements_of(made.placements), *all_of(made.certificate, "tolerance cells leaves uncertified_area")]
