@@ -261,6 +261,8 @@ def calls(at: Inputs) -> dict[str, Call]:
         "GeodesicVoronoi.split": lambda: at.cells.split(),
         "Job": sb.Job,
         "Job.cancel": lambda: sb.Job().cancel(),
+        "Job.part": lambda: sb.Job().part(0.25, 0.5),
+        "Job.update": lambda: sb.Job().update(0.5),
         "LiftedVoronoi.locate": lambda: at.lifted.locate(sb.sample(at.disk, 500)),
         "LiftedVoronoi.split": lambda: at.lifted.split(),
         "MappedShapes.outline": lambda: at.laid.mapped.outline(0),

@@ -13,6 +13,20 @@ fraction then starts from 0. Once cancelled it stays cancelled.)")
                              "Share of the work done, 0 to 1, never falling during one call.")
       .def_property_readonly("text", &Job::text, "The work being done, for a person to read.")
       .def_property_readonly("cancelled", &Job::cancelled, "True once `cancel` was called.")
+      .def(
+          "part",
+          [](const Job& job, const py::object& begin, const py::object& end) {
+            return job.part(as_real(begin, "begin"), as_real(end, "end"));
+          },
+          py::arg("begin"), py::arg("end"),
+          R"(A job for a part of this one's work, from `begin` to `end` in its 0 to 1.
+
+Several calls, each with the part that comes after the last one's, report one rising fraction; what is done to a part is
+done to the whole. Raises InputError unless 0 <= begin <= end <= 1.)")
+      .def(
+          "update", [](const Job& job, const py::object& fraction) { job.update(as_real(fraction, "fraction")); },
+          py::arg("fraction"),
+          "Say how far the work between calls has come, 0 to 1; raises `Cancelled` when asked to stop.")
       .def("cancel", &Job::cancel, "Ask the work to stop: within 0.1 s its call raises `Cancelled`.")
       .def("__repr__", [](const Job& job) {
         return message("<saddleback.Job ", static_cast<int>(100 * job.fraction()), " %",

@@ -42,6 +42,19 @@ def jobs(mesh: sb.Mesh, rng: Random) -> None:
     raise AssertionError("a cancelled job went on")
 
 
+@guards("Job.part", "Job.update")
+def parts_of_jobs(mesh: sb.Mesh, rng: Random) -> None:
+    """Each call of several ends where its part does, within the part that the whole is of another job."""
+    whole = sb.Job()
+    job = whole.part(0.25, 0.75)
+    ends = np.sort(rng.random(3))
+    for begin, end in zip([0.0, *ends[:-1]], ends, strict=True):
+        sb.exact_distances(mesh, 0, job=job.part(begin, end))
+        assert abs(whole.fraction - (0.25 + 0.5 * end)) < 1e-12
+    job.update(1)
+    assert whole.fraction == 0.75
+
+
 @guards("devices", "Device", "cuda_status", "limit_device_memory", "release_pinned_memory", on="plane")
 def devices(sites: np.ndarray, rng: Random) -> None:
     """The processor is always there, and "auto" answers as it does."""

@@ -93,3 +93,26 @@ def test_results_do_not_depend_on_threads():
         assert again.area == with_all.area
         for a, b in zip(arrays, [again.total_angles, again.corner_angles, again.face_areas], strict=True):
             assert np.array_equal(a, b)
+
+
+def test_parts_of_a_job_make_one_rising_fraction():
+    job = sb.Job()
+    first, second = job.part(0, 0.25), job.part(0.5, 1)
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    sb.exact_distances(mesh, [0], job=first)
+    assert job.fraction == first.fraction == second.fraction == 0.25
+    second.update(0.5)
+    assert job.fraction == 0.75
+    second.update(0.1)  # never back
+    assert job.fraction == 0.75
+    sb.exact_distances(mesh, [0], job=second.part(0.5, 1))
+    assert job.fraction == 1 and job.text
+    sb.exact_distances(mesh, [0], job=job)
+    assert job.fraction == 1
+    second.cancel()
+    assert job.cancelled and first.cancelled
+    with pytest.raises(sb.Cancelled):
+        first.update(0.5)
+    for begin, end in ((-0.1, 1), (0.6, 0.5), (0, 1.1), (float("nan"), 1)):
+        with pytest.raises(sb.InputError, match="begin, end: wanted 0 <= begin <= end <= 1"):
+            job.part(begin, end)
