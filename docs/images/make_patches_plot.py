@@ -75,26 +75,33 @@ def drawn(mesh: sb.Mesh, share: float, left: float, top: float) -> list[str]:
         tuple(pair): bool(is_sharp) for pair, is_sharp in zip(pairs.tolist(), patches.polygons.is_barrier, strict=True)
     }
     lines = []
-    for t in np.argsort(depth, kind="stable"):
-        if normals[t] @ view <= 0:
+    of_patch = np.bincount(patches.triangle_patch, depth) / np.bincount(patches.triangle_patch)
+    for patch in np.argsort(of_patch, kind="stable"):
+        seen = np.flatnonzero((patches.triangle_patch == patch) & (normals @ view > 0))
+        if not len(seen):
             continue
-        shade = light[patches.triangle_patch[t]]
-        color = "#{:02x}{:02x}{:02x}".format(*(int(255 * min(1, 0.28 + 0.75 * shade * c)) for c in (0.80, 0.90, 1.0)))
-        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in places[patches.triangles[t]])
-        lines.append(f'<polygon points="{points}" fill="{color}" stroke="{color}" stroke-width="0.6"/>')
-        for pair in diagonals[t].tolist():
-            if tuple(pair) in sharp:
-                (x, y), (u, v) = places[pair]
-                width, ink = (1.6, "#10305c") if sharp[tuple(pair)] else (0.8, "#2a6fdb")
-                lines.append(
-                    f'<line x1="{x:.1f}" y1="{y:.1f}" x2="{u:.1f}" y2="{v:.1f}" stroke="{ink}" stroke-width="{width}"'
-                    ' stroke-linecap="round"/>'
-                )
+        color = "#{:02x}{:02x}{:02x}".format(
+            *(int(255 * min(1, 0.28 + 0.75 * light[patch] * c)) for c in (0.8, 0.9, 1))
+        )
+        fill = "".join(f"M{joined(places[patches.triangles[t]])}z" for t in seen)
+        lines.append(f'<path d="{fill}" fill="{color}" stroke="{color}"/>')
+        pairs_seen = [pair for t in seen for pair in diagonals[t].tolist()]
+        for is_sharp in (False, True):
+            sides = "".join(f"M{joined(places[pair])}" for pair in pairs_seen if sharp.get(tuple(pair)) is is_sharp)
+            if sides:
+                lines.append(f'<path d="{sides}" class="{"s" if is_sharp else "p"}"/>')
     return lines
+
+
+def joined(points: Floats) -> str:
+    """A line through places, to half a unit."""
+    return "L".join(f"{x:g} {y:g}" for x, y in np.round(2 * points) / 2)
 
 
 width, height = 4 * SIZE + 3 * GAP, SIZE
 picture = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">']
+picture.append("<style>path{stroke-width:.6;stroke-linecap:round}.p{stroke:#2a6fdb;stroke-width:.8}")
+picture.append(".s{stroke:#10305c;stroke-width:1.6}</style>")
 for i, (mesh, share) in enumerate(((knob(), 0.03), (knob(), 0.01), (ring(), 0.03), (ring(), 0.01))):
     picture += drawn(mesh, share, i * (SIZE + GAP), 0)
 (Path(__file__).parent / "super-patches.svg").write_text("\n".join([*picture, "</svg>", ""]), encoding="utf-8")

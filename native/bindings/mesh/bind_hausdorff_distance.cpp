@@ -16,9 +16,10 @@ struct Hausdorff {
 auto fields_of(Hausdorff& of) { return std::tie(of.of_first, of.of_second); }
 
 Hausdorff measure(const py::object& first, const py::object& second, const py::object& tolerance,
-                  const py::object& threads, const py::object& job) {
+                  const py::object& limit, const py::object& threads, const py::object& job) {
   const Mesh &a = as_mesh(first, "first"), &b = as_mesh(second, "second");
   const HausdorffOptions options{.tolerance = as_real(tolerance, "tolerance"),
+                                 .limit = as_real(limit, "limit"),
                                  .threads = as_integer(threads, "threads")};
   const JobIn token(job);
   return without_gil([&] {
@@ -38,6 +39,9 @@ Parameters
 first, second : Mesh
 tolerance : float
     By which distances may be too small, as a share of the diagonal of both meshes' box.
+limit : float
+    A length, 0 for none: only whether something is farther is found out, which takes less time. A distance above the
+    limit may be any of those; one below may be anything up to it, or the tolerance more than it says.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -49,7 +53,7 @@ HausdorffDistance
 Raises
 ------
 InputError
-    A tolerance that is not above 0.
+    A tolerance that is not above 0, a limit that is negative.
 Cancelled
     The job was cancelled.
 
@@ -81,7 +85,7 @@ void bind_hausdorff_distance(py::module_& m) {
                        h.of_second.distance, ">");
       });
   m.def("hausdorff_distance", &measure, py::arg("first"), py::arg("second"), py::arg("tolerance") = 1e-4, py::kw_only(),
-        py::arg("threads") = 0, py::arg("job") = py::none(), k_doc);
+        py::arg("limit") = 0.0, py::arg("threads") = 0, py::arg("job") = py::none(), k_doc);
   let_travel<Hausdorff>(m, "HausdorffDistance");
 }
 

@@ -78,6 +78,14 @@ class Job:
     @property
     def cancelled(self) -> bool:
         """True once `cancel` was called."""
+    def part(self, begin: SupportsFloat, end: SupportsFloat) -> Job:
+        """A job for a part of this one's work, from `begin` to `end` in its 0 to 1.
+
+        Several calls, each with the part that comes after the last one's, report one rising fraction; what is done to a part is
+        done to the whole. Raises InputError unless 0 <= begin <= end <= 1.
+        """
+    def update(self, fraction: SupportsFloat) -> None:
+        """Say how far the work between calls has come, 0 to 1; raises `Cancelled` when asked to stop."""
     def cancel(self) -> None:
         """Ask the work to stop: within 0.1 s its call raises `Cancelled`."""
 
@@ -2134,6 +2142,7 @@ def hausdorff_distance(
     second: Mesh,
     tolerance: SupportsFloat = 1e-4,
     *,
+    limit: SupportsFloat = 0.0,
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> HausdorffDistance:
@@ -2144,6 +2153,9 @@ def hausdorff_distance(
     first, second : Mesh
     tolerance : float
         By which distances may be too small, as a share of the diagonal of both meshes' box.
+    limit : float
+        A length, 0 for none: only whether something is farther is found out, which takes less time. A distance above the
+        limit may be any of those; one below may be anything up to it, or the tolerance more than it says.
     threads : int
         0: all cores. The result does not depend on it.
     job : Job, optional
@@ -2155,7 +2167,7 @@ def hausdorff_distance(
     Raises
     ------
     InputError
-        A tolerance that is not above 0.
+        A tolerance that is not above 0, a limit that is negative.
     Cancelled
         The job was cancelled.
 

@@ -1,5 +1,7 @@
 // Method: the distance from a triangle's points to another triangle is a convex function, greatest at a corner; so the
-// farthest corner from any one face of the other mesh bounds the whole triangle. Triangles whose bound exceeds what was
+// farthest corner from any one face of the other mesh bounds the whole triangle. So does the distance of its farthest
+// corner and the way from there: by Jung's theorem some corner of a triangle is no farther from any of its points than
+// its longest side over the root of three. Triangles whose bound exceeds what was
 // found by more than the tolerance are divided into four, all of one size before those of the next.
 
 #include "saddleback/mesh/hausdorff_distance.h"
@@ -44,14 +46,21 @@ double diagonal(const Mesh& a, const Mesh& b) {
 
 class Search {
  public:
-  Search(const Mesh& from, const Mesh& to, double tolerance, int threads, const JobStage& stage)
-      : from_(from), to_(to), surface_(to, stage), tolerance_(tolerance), threads_(threads) {}
+  Search(const Mesh& from, const Mesh& to, const HausdorffOptions& options, const JobStage& stage)
+      : from_(from),
+        to_(to),
+        surface_(to, stage),
+        tolerance_(options.tolerance * diagonal(from, to)),
+        limit_(options.limit),
+        threads_(options.threads) {}
 
   FarthestPoint run(const JobStage& stage) {
     std::vector<Patch> patches = faces(stage);
     for (int level = 0; !patches.empty(); ++level) {
       for (const Patch& patch : patches) take(patch);
-      std::erase_if(patches, [&](const Patch& patch) { return patch.most <= best_.distance + tolerance_; });
+      if (limit_ > 0 && best_.distance > limit_) break;
+      known_ = std::max(best_.distance + tolerance_, limit_);
+      std::erase_if(patches, [&](const Patch& patch) { return patch.most <= known_; });
       stage.update(1 - 0.5 / (level + 1));
       patches = divided(patches, stage);
     }
@@ -65,7 +74,14 @@ class Search {
   }
 
   void bound(Patch& patch) const {
-    patch.most = std::numeric_limits<double>::infinity();
+    constexpr double k_jung = 0.57735026918962585;  // rounded up
+    double farthest = 0, longest = 0;
+    for (int i = 0; i < 3; ++i) {
+      farthest = std::max(farthest, patch.corner[i].distance);
+      longest = std::max(longest, (patch.corner[i].place - patch.corner[(i + 1) % 3].place).norm());
+    }
+    patch.most = farthest + k_jung * longest;
+    if (patch.most <= known_) return;
     for (const Probe& corner : patch.corner) {
       double by_face = 0, by_way = 0;
       for (const Probe& other : patch.corner) {
@@ -128,8 +144,9 @@ class Search {
 
   const Mesh &from_, &to_;
   const NearestSurface surface_;
-  const double tolerance_;
+  const double tolerance_, limit_;
   const int threads_;
+  double known_ = 0;  ///< what is no farther needs no look
   FarthestPoint best_;
 };
 
@@ -137,10 +154,10 @@ class Search {
 
 FarthestPoint farthest_point(const Mesh& from, const Mesh& to, const HausdorffOptions& options, const JobStage& stage) {
   if (!(options.tolerance > 0)) throw InputError(message("tolerance: wanted more than 0, got ", options.tolerance));
+  if (!(options.limit >= 0)) throw InputError(message("limit: wanted a length of 0 or more, got ", options.limit));
   from.require_space("hausdorff_distance");
   to.require_space("hausdorff_distance");
-  Search search(from, to, options.tolerance * diagonal(from, to), options.threads, stage);
-  return search.run(stage);
+  return Search(from, to, options, stage).run(stage);
 }
 
 }  // namespace saddleback

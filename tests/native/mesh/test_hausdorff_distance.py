@@ -70,3 +70,21 @@ def test_bad_tolerance_and_cancel() -> None:
         sb.hausdorff_distance(mesh, mesh, 0)
     other = sb.Mesh(*meshes.torus(150, 80))
     check_progress_and_cancel(lambda job: sb.hausdorff_distance(mesh, other, 1e-7, job=job), 0.02)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_limit_tells_whether_something_is_farther(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    vertices, triangles = meshes.icosphere(3)
+    mesh, moved = sb.Mesh(vertices, triangles), sb.Mesh(vertices + 0.05 * rng.normal(size=vertices.shape), triangles)
+    tolerance = 1e-4
+    whole = sb.hausdorff_distance(mesh, moved, 1e-5)
+    slack = tolerance * np.linalg.norm(np.ptp(np.vstack([mesh.vertices, moved.vertices]), axis=0))
+    for share in (0.3, 0.9, 1.1, 3.0):
+        limit = share * whole.distance
+        told = sb.hausdorff_distance(mesh, moved, tolerance, limit=limit)
+        for of, mine in ((whole.from_first, told.from_first), (whole.from_second, told.from_second)):
+            assert mine <= of + slack
+            assert mine > limit - slack or of <= limit + slack
+    with pytest.raises(sb.InputError, match="limit: wanted a length of 0 or more, got -1"):
+        sb.hausdorff_distance(mesh, moved, limit=-1)

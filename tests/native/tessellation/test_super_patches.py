@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections import Counter
 
 import numpy as np
@@ -223,3 +225,34 @@ def test_a_cancelled_job_is_heard() -> None:
     job.cancel()
     with pytest.raises(sb.Cancelled):
         sb.super_patches(SOLIDS["sphere"], error=0.01, job=job)
+
+
+def test_the_job_never_goes_back_and_ends_at_1() -> None:
+    job, seen, done = sb.Job(), [0.0], threading.Event()
+
+    def watch() -> None:
+        while not done.is_set():
+            seen.append(job.fraction)
+            time.sleep(2e-4)
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    try:
+        sb.super_patches(SOLIDS["sphere"], error=0.02, job=job)
+    finally:
+        done.set()
+        watcher.join()
+    assert (np.diff(seen) >= 0).all() and len(set(seen)) > 20
+    assert job.fraction == 1
+
+
+def test_cells_along_a_winding_edge_become_ever_smaller() -> None:
+    """A roof whose ridge bends back and forth."""
+    size = 24
+    vertices, triangles = meshes.grid(size, size)
+    x, y = vertices[:, 0], vertices[:, 1]
+    vertices[:, 2] = 0.4 * np.abs(x - 0.5 - 0.08 * np.sin(9 * y)) + 0.1 * np.cos(7 * x) * y
+    mesh = sb.Mesh(vertices, triangles)
+    patches = sb.super_patches(mesh, error=0.004, sharp=0.4)
+    check_closed(mesh, patches.polygons)
+    assert patches.hausdorff(mesh, 1e-3).distance <= 0.004 and len(patches) < 200
