@@ -131,8 +131,21 @@ def vertices_of_disks(sites: Floats, rng: Random) -> None:
 @guards("Voronoi2d.clip", on="plane")
 def clipped_disks(sites: Floats, rng: Random) -> None:
     """Cells of disks within domains: areas sum, points of the plane are in their nearest disk's loops."""
-    weights = random_weights(sites, rng)
-    loops = random_domain(sites, rng)
+    assert_clipped(sites, random_weights(sites, rng), random_domain(sites, rng), rng)
+
+
+@guards("Voronoi2d.clip", on="nothing")
+def clipped_disks_in_line(rng: Random) -> None:
+    """Cells of disks nearly in line, of any size, whose vertices are far out or none: as those of any disks."""
+    count = int(rng.integers(3, 12))
+    along = rng.permutation(2 * count)[:count] if rng.random() < 0.5 else rng.random(count) * count
+    direction, size = rng.integers(1, 9, 2), 10.0 ** rng.uniform(-6, 6)
+    sites = size * (along[:, None] * direction) * (1 + 2.0**-52 * rng.integers(-2, 3, (count, 2)))
+    weights = rng.integers(0, 8, count) * size if rng.random() < 0.5 else random_weights(sites, rng)
+    assert_clipped(sites, weights, random_domain(sites, rng), rng)
+
+
+def assert_clipped(sites: Floats, weights: Floats, loops: list[Floats], rng: Random) -> None:
     size = float(np.ptp(loops[0], axis=0).max())
     tolerance = size * 10.0 ** rng.uniform(-12, -2)
     clipped = sb.voronoi_2d(sites, weights, threads=1).clip(loops if len(loops) > 1 else loops[0], tolerance=tolerance)

@@ -61,6 +61,8 @@ def test_random_input_meets_the_truths():
         ("sweeps.ties_of_a_circle", 31001546),  # six arcs vanish in the moment in which a site is touched
         ("sweeps.ties_of_a_circle", 31000843),  # twins an ulp apart, touched in the wrong order
         ("sweeps.ties_of_a_circle", 893636),  # begun in a vertex, whose event was not told
+        ("disks.clipped_disks_in_line", 10),  # vertices 1e16 away, to which a curve had no points near the domain
+        ("disks.clipped_disks_in_line", 51),
         ("disks.wanted_areas", 551),  # a border that passes two sites close by, as one piece
         ("relaxation.centers_of_the_plane", 20280198),  # a place within rounding of a vertex saw all in its direction
         ("relaxation.centers_of_the_plane", 777013576),  # an obtuse corner nearer than both ends of the side across

@@ -67,10 +67,10 @@ EdgePieces::EdgePieces(const Chart& chart, const Voronoi2d& diagram, double tole
   for (Index edge = 0; edge < static_cast<Index>(diagram.edges.size()); ++edge) {
     stage.check();
     const auto [left, right] = diagram.edge_sites[edge];
-    double reach = (diagram.sites[right] - diagram.sites[left]).norm();
+    double reach = (diagram.sites[right] - diagram.sites[left]).stableNorm();
     for (const Index site : {left, right}) {
       const Vec2& s = diagram.sites[site];
-      reach = std::max(reach, k_far * (s - low).cwiseAbs().cwiseMax((s - high).cwiseAbs()).norm());
+      reach = std::max(reach, k_far * (s - low).cwiseAbs().cwiseMax((s - high).cwiseAbs()).stableNorm());
     }
     add_edge(diagram, edge, tolerance, reach);
   }
@@ -85,17 +85,13 @@ void EdgePieces::add_edge(const Voronoi2d& diagram, Index edge, double tolerance
   const auto [first, second] = diagram.edges[edge];
   if (first != k_none && second != k_none && corners_[first] == corners_[second]) return;
   const voronoi2d::Bisector curve = voronoi2d::edge_bisector(diagram, edge);
-  const double low = curve.parameter_beyond(0, false, extent), high = curve.parameter_beyond(0, true, extent);
-  const auto parameter = [&](Index vertex, double open) {
-    return vertex == k_none ? open : std::clamp(curve.parameter(diagram.vertices[vertex]), low, high);
-  };
-  const double from = parameter(first, low), to = parameter(second, high);
-  if (to == low || from == high) return;  // far away
+  const voronoi2d::EdgePart part = voronoi2d::edge_part(diagram, edge, curve, extent);
+  if (part.is_empty()) return;
   std::vector<Vec2> places;
-  if (from < to) curve.sample(from, to, tolerance, places);
-  const Vec2 begin = from == low ? curve.at(low) : diagram.vertices[corners_[first]],
-             end = to == high ? curve.at(high) : diagram.vertices[corners_[second]];
-  add_point(begin, from == low ? k_none : corners_[first]);
+  if (part.from.t < part.to.t) curve.sample(part.from.t, part.to.t, tolerance, places);
+  const Vec2 begin = part.from.is_cut ? curve.at(part.from.t) : diagram.vertices[corners_[first]],
+             end = part.to.is_cut ? curve.at(part.to.t) : diagram.vertices[corners_[second]];
+  add_point(begin, part.from.is_cut ? k_none : corners_[first]);
   for (const Vec2& place : places) {
     if ((place - points_.back().place).norm() <= k_merged * tolerance || (place - end).norm() <= k_merged * tolerance)
       continue;
@@ -103,7 +99,7 @@ void EdgePieces::add_edge(const Voronoi2d& diagram, Index edge, double tolerance
     add_point(place, k_none);
   }
   pieces_.push_back({edge, static_cast<Index>(points_.size()) - 1});
-  add_point(end, to == high ? k_none : corners_[second]);
+  add_point(end, part.to.is_cut ? k_none : corners_[second]);
 }
 
 void EdgePieces::add_point(const Vec2& place, Index vertex) {

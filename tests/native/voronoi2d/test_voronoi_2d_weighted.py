@@ -276,6 +276,21 @@ def test_clipped_areas_sum_to_the_domain(kind, n):
         assert (distances[np.arange(len(owners)), owners] - distances.min(axis=1)).max() < 4e-3 * mean_width
 
 
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("seed", range(40))
+def test_clipped_cells_of_disks_nearly_in_line_fill_the_domain(seed, size):
+    """Their vertices are up to 1e16 times as far away as the sites are from each other."""
+    rng = np.random.default_rng(seed)
+    sites, weights = weighted_sites.in_line(int(rng.integers(3, 12)), rng)
+    low, width = sites.min(axis=0), np.ptp(sites, axis=0).max() / size
+    diagram = sb.voronoi_2d((sites - low) / width, weights / width)
+    clipped = diagram.clip(size * np.array([(0, 0), (1, 0), (1, 1), (0, 1)]), tolerance=1e-5 * size)
+    assert abs(clipped.areas.sum() / size**2 - 1) < 1e-9
+    seen = clipped.areas > 0
+    moment = clipped.areas[seen] @ clipped.centroids[seen]
+    assert abs(moment / size**3 - 0.5).max() < 1e-9
+
+
 def test_clipped_cells_approach_the_curved_ones():
     sites, weights = KINDS["random_disks"](100, np.random.default_rng(9))
     diagram = sb.voronoi_2d(sites, weights)

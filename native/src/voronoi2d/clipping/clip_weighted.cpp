@@ -169,15 +169,31 @@ CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, c
 /// Returns more than the distance of a site from any point of the domain, so that outlines may be cut short there.
 double CurvedCells::reach_from(Index site) const {
   const Vec2& s = diagram_.sites[site];
-  return 8 * ((s - low_).cwiseAbs().cwiseMax((s - high_).cwiseAbs())).norm();
+  return 8 * ((s - low_).cwiseAbs().cwiseMax((s - high_).cwiseAbs())).stableNorm();
 }
 
+/// Appends an edge as far as it matters: points farther out would leave few digits, and fewer points, to what is near.
+/// Seen from the site what is left out turns by much less than a right angle, so that its chord stays outside too.
 void CurvedCells::add_side(Index site, Index edge, Loop& loop) const {
   const auto [left, right] = diagram_.edge_sites[edge];
   const double extent =
-      std::max(reach_from(left), reach_from(right)) + (diagram_.sites[right] - diagram_.sites[left]).norm();
+      std::max(reach_from(left), reach_from(right)) + (diagram_.sites[right] - diagram_.sites[left]).stableNorm();
+  const auto [first, second] = diagram_.edges[edge];
+  const Bisector curve = edge_bisector(diagram_, edge);
+  const EdgePart part = edge_part(diagram_, edge, curve, extent);
+  const auto far_point = [&](Index vertex, bool is_forwards) -> Vec2 {
+    const Vec2& s = diagram_.sites[site];
+    return s + reach_from(site) * (vertex == k_none ? curve.end_direction(is_forwards)
+                                                    : Vec2((diagram_.vertices[vertex] - s).stableNormalized()));
+  };
   Loop points;
-  add_edge_points(diagram_, edge, tolerance_, extent, points);
+  if (part.is_empty()) {
+    points = {far_point(first, false), far_point(second, true)};
+  } else {
+    points.push_back(part.from.is_cut ? curve.at(part.from.t) : diagram_.vertices[first]);
+    curve.sample(part.from.t, part.to.t, tolerance_, points);
+    points.push_back(part.to.is_cut ? curve.at(part.to.t) : diagram_.vertices[second]);
+  }
   if (left != site) std::reverse(points.begin(), points.end());
   for (const Vec2& point : points) add_point(loop, point);
 }

@@ -58,6 +58,21 @@ void add_power_edge(const Voronoi2d& diagram, Index edge, double extent, std::ve
 
 }  // namespace
 
+EdgePart edge_part(const Voronoi2d& diagram, Index edge, const Bisector& curve, double extent) {
+  const Vec2 apex = curve.at(0);
+  const auto end = [&](Index vertex, bool is_forwards) -> EdgePart::End {
+    if (vertex != k_none) {
+      const Vec2& place = diagram.vertices[vertex];
+      const double t = curve.parameter(place);
+      if ((place - apex).stableNorm() <= extent) return {t, false};
+      is_forwards = t > 0;
+    }
+    return {curve.parameter_beyond(0, is_forwards, extent), true};
+  };
+  const auto [first, second] = diagram.edges[edge];
+  return {end(first, false), end(second, true)};
+}
+
 void add_edge_points(const Voronoi2d& diagram, Index edge, double tolerance, double extent, std::vector<Vec2>& points) {
   if (!diagram.powers.empty()) return add_power_edge(diagram, edge, extent, points);
   const Bisector curve = edge_bisector(diagram, edge);

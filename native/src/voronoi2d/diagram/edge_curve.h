@@ -20,6 +20,18 @@ Bisector edge_bisector(const Voronoi2d& diagram, Index edge);
 /// The curve of one of a cell's edges, counter-clockwise about its site, in coordinates that count from the site.
 Bisector bisector_beside(const Voronoi2d& diagram, Index site, Index edge);
 
+/// The part of an edge that goes no farther than a length from the middle of its curve.
+struct EdgePart {
+  struct End {
+    double t;     ///< parameter of the curve
+    bool is_cut;  ///< short of its vertex, or of infinity
+  };
+  End from, to;
+  /// True where all of the edge is farther out, on one arm of its curve.
+  bool is_empty() const { return from.is_cut && to.is_cut && from.t == to.t; }
+};
+EdgePart edge_part(const Voronoi2d& diagram, Index edge, const Bisector& curve, double extent);
+
 /// Appends an edge from first to second vertex as points no farther from it than a tolerance; an infinite end is as far
 /// from the middle of the curve, or beyond the vertex, as `extent` says.
 void add_edge_points(const Voronoi2d& diagram, Index edge, double tolerance, double extent, std::vector<Vec2>& points);
