@@ -71,7 +71,7 @@ LOOKS: dict[str, Look] = {
         "Scales", "Scales that overlap along the strokes, like those of a fish or a roof's tiles", "MOD_FLUID",
         "distribute",
         {
-            "shapes": "SCALES", "count": 1000, "overlap": 0.7, "tilt": math.radians(14.0), "no_crossings": True,
+            "shapes": "SCALES", "count": 1000, "overlap": 0.73, "tilt": math.radians(14.0), "no_crossings": True,
             "fit": 0.04,
         },
         Finish("Scales", ("#2a6d5c", "#1f5a4e", "#3b8266", "#184741", "#57926a"), 0.3, coat=0.5),
@@ -79,7 +79,7 @@ LOOKS: dict[str, Look] = {
     ),
     "FEATHERS": Look(
         "Feathers", "Plumage along the strokes", "FORCE_WIND", "distribute",
-        {"shapes": "FEATHERS", "count": 700, "overlap": 0.6, "tilt": math.radians(9.0), "fit": 0.04},
+        {"shapes": "FEATHERS", "count": 700, "overlap": 0.65, "tilt": math.radians(9.0), "fit": 0.04},
         Finish("Feathers", ("#2b3f5c", "#35557a", "#24344c", "#4a7296", "#1c2a3d"), 0.6),
         ground="#161f2c",
     ),
