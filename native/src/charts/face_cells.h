@@ -12,8 +12,8 @@ namespace saddleback::charts {
 struct CornerKey {
   enum class Kind : std::uint8_t { vertex, crossing, branch, curve };
   Kind kind;
-  /// vertex: of the mesh; crossing: half-edge that speaks for the mesh edge; branch: vertex of the diagram; curve: point
-  /// of a curved edge.
+  /// vertex: of the mesh; crossing: half-edge that speaks for the mesh edge; branch: vertex of the diagram; curve:
+  /// point of a curved edge.
   Index a;
   Index b;  ///< crossing: edge of the diagram, or piece of a curved one; of these the half-edge of a seam it lies on
   bool operator==(const CornerKey&) const = default;
