@@ -106,7 +106,7 @@ def faces_with(mesh: sb.Mesh, vertices: NDArray[np.int32]) -> list[int]:
     return np.flatnonzero(np.isin(mesh.triangles, vertices).sum(axis=1) == len(vertices)).tolist()
 
 
-def link(mesh: sb.Mesh, held: NDArray[np.int32]) -> list[tuple[int, Floats, Floats]]:
+def link(mesh: sb.Mesh, held: NDArray[np.int32]) -> list[tuple[int, int, int]]:
     """The sectors about a point, counter-clockwise: a face, and its corners on the right and on the left."""
     about = {face: mesh.triangles[face].tolist() for face in faces_with(mesh, held)}
     if len(held) == 1:
@@ -122,15 +122,18 @@ def link(mesh: sb.Mesh, held: NDArray[np.int32]) -> list[tuple[int, Floats, Floa
     ring = [first]
     while len(ring) < len(corners):
         ring.append(next(c for c in corners if c[1] == ring[-1][2] and c not in ring))
-    return [(face, mesh.vertices[right], mesh.vertices[left]) for face, right, left in ring]
+    return ring
 
 
 def sides(mesh: sb.Mesh, points: sb.SurfacePoints, places: Floats, before: int, at: int, after: int) -> list[float]:
     """The angles on the sides of a curve at one of its points that are on the surface."""
     held = held_by(mesh, points, at)
-    sectors = [(face, right - places[at], left - places[at]) for face, right, left in link(mesh, held)]
+    ring = link(mesh, held)
+    sectors = [
+        (face, mesh.vertices[right] - places[at], mesh.vertices[left] - places[at]) for face, right, left in ring
+    ]
     starts = np.concatenate([[0], np.cumsum([angle(right, left) for _, right, left in sectors])])
-    goes_round = bool((sectors[0][1] == sectors[-1][2]).all())
+    goes_round = ring[0][1] == ring[-1][2]
 
     def direction(to: int) -> float:
         way = places[to] - places[at]
