@@ -94,7 +94,7 @@ struct DirectionFieldEditor::Kept {
   std::unique_ptr<TrivialConnection> trivial;
   // The last trivial connection and what strokes turned it by.
   std::vector<Index> units;
-  std::vector<double> angles, turns, shift;  // shift: over vertices
+  std::vector<double> given, angles, turns, shift;  // shift: over vertices
 
   void prepare(const JobStage& stage);
   DirectionField designed(const DirectionFieldOptions& options, const JobStage& stage);
@@ -103,7 +103,8 @@ struct DirectionFieldEditor::Kept {
  private:
   std::vector<std::vector<Index>> eager_loops(const std::vector<double>& some_turns) const;
   std::vector<double> gentle_turns(const std::vector<Index>& wanted, const JobStage& stage) const;
-  void connect(const DirectionFieldOptions& options, const JobStage& stage);
+  std::vector<double> turns_given(const std::vector<Complex>& wanted) const;
+  void connect(const DirectionFieldOptions& options, const std::vector<Complex>& powers, const JobStage& stage);
   std::vector<double> turn_onto(const std::vector<Complex>& wanted, const FaceSprings<double>& springs,
                                 std::vector<double> turned, const JobStage& stage) const;
   std::vector<double> best_constants(const std::vector<Complex>& wanted) const;
@@ -135,12 +136,12 @@ std::vector<std::vector<Index>> DirectionFieldEditor::Kept::eager_loops(const st
 std::vector<double> DirectionFieldEditor::Kept::gentle_turns(const std::vector<Index>& wanted,
                                                              const JobStage& stage) const {
   constexpr int k_rounds = 12;
-  std::vector<double> best = trivial->turns(wanted, symmetry, {}, stage.part(0, 0.9)), last = best;
+  std::vector<double> best = trivial->turns(wanted, symmetry, given, {}, stage.part(0, 0.9)), last = best;
   std::vector<std::vector<Index>> eager = eager_loops(best), gentle;
   std::size_t fewest = eager.size();
   for (int round = 0; round < k_rounds && !eager.empty(); ++round) {
     gentle.insert(gentle.end(), eager.begin(), eager.end());
-    std::vector<double> next = trivial->turns(wanted, symmetry, gentle, stage.part(0.9, 1));
+    std::vector<double> next = trivial->turns(wanted, symmetry, given, gentle, stage.part(0.9, 1));
     if (next == last) break;
     last = std::move(next);
     eager = eager_loops(last);
@@ -151,11 +152,31 @@ std::vector<double> DirectionFieldEditor::Kept::gentle_turns(const std::vector<I
   return best;
 }
 
-void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, const JobStage& stage) {
+/// Returns for each half-edge how far the directions wanted on its two sides turn, less what a usual tie resists.
+std::vector<double> DirectionFieldEditor::Kept::turns_given(const std::vector<Complex>& wanted) const {
+  std::vector<double> result;
+  if (wanted.empty() || loops.loops.empty()) return result;
+  result.assign(mesh.halfedge_count(), 0.0);
+  for (const Index h : inner_edges(mesh)) {
+    const Complex from = wanted[Mesh::face_of(h)], to = wanted[Mesh::face_of(mesh.twin(h))];
+    const double stiffness = std::min(std::abs(from), std::abs(to));
+    if (stiffness == 0) continue;
+    const double turn =
+        std::remainder((std::arg(to) - std::arg(from)) / symmetry - connection.transport[h], k_turn / symmetry);
+    result[h] = turn * stiffness / (stiffness + 2 * k_usual_tie);
+    result[mesh.twin(h)] = -result[h];
+  }
+  return result;
+}
+
+void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, const std::vector<Complex>& powers,
+                                         const JobStage& stage) {
   if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, *filled, loops, stage.part(0, 0.1));
   std::vector<Index> wanted = prescribed_units(mesh, *filled, symmetry, options, *trivial, stage.part(0.1, 0.15));
-  if (wanted == units) return;
+  std::vector<double> now_given = turns_given(powers);
+  if (wanted == units && now_given == given) return;
   units.clear();
+  given = std::move(now_given);
   turns = gentle_turns(wanted, stage.part(0.15, 1));
   stage.check();
   angles = integrate(mesh, connection, loops, symmetry, turns);
@@ -201,7 +222,7 @@ DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions&
   const bool along_boundary = options.align == FieldAlignment::boundary;
   const std::vector<StrokeFaces> strokes = stroke_faces(mesh, symmetry, options.strokes, along_boundary);
   const std::vector<Complex> wanted = wanted_powers(mesh, symmetry, options, stage);
-  connect(options, stage.part(0, 0.6));
+  connect(options, wanted, stage.part(0, 0.6));
 
   std::vector<double> turned_angles = angles, turned_turns = turns;
   std::vector<bool> fixed(mesh.face_count(), false);

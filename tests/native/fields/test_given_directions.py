@@ -193,3 +193,26 @@ def test_triangles_with_right_and_obtuse_angles_take_no_longer() -> None:
 
     plain, other = (min(seconds(sb.Mesh(places, triangles)) for _ in range(3)) for places in (vertices, sheared))
     assert other < 2 * plain  # with pairs that others had broken up it took three times as long
+
+
+@pytest.mark.parametrize("symmetry", SYMMETRIES)
+@pytest.mark.parametrize("around_tube", [1, -2])
+def test_given_turns_around_handles_are_met(around_tube: int, symmetry: int) -> None:
+    """Directions that turn around the tube, without singularities: the least turning around handles is another."""
+    mesh = sb.Mesh(*SURFACES["torus"])
+    x, y, z = mesh.vertices[mesh.triangles].mean(axis=1).T
+    tube = np.arctan2(z, np.hypot(x, y) - np.hypot(*mesh.vertices[:, :2].T).mean())
+    wanted = sb.direction_field(mesh, symmetry, {})
+    angles = wanted.angles + around_tube * tube / symmetry
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    up = np.cross(b - a, c - a)
+    across = np.cross(up / np.linalg.norm(up, axis=1)[:, None], wanted.vectors)
+    turn = (angles - wanted.angles)[:, None]
+    directions = np.cos(turn) * wanted.vectors + np.sin(turn) * across
+    found = sb.direction_field(mesh, symmetry, {}, directions=directions)
+    assert found.singularities == {}
+    assert off(found, angles).max() < 3
+    editor = sb.DirectionFieldEditor(mesh, symmetry)
+    assert off(editor.field({}), wanted.angles).max() < 1e-9
+    np.testing.assert_array_equal(editor.field({}, directions=directions).angles, found.angles)
+    np.testing.assert_array_equal(editor.field({}).angles, wanted.angles)

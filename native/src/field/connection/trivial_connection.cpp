@@ -34,10 +34,10 @@ GraphMatrix<double> node_laplacian(const Mesh& mesh, const SurfaceConnection& co
   return result;
 }
 
-/// Moves each residual by whole quanta while the energy residual^T inverse residual falls.
-void choose_branches(Vector& residual, const Eigen::Ref<const Matrix>& inverse, double quantum) {
+/// Moves each residual by whole quanta while the energy of what it differs from the wanted ones falls, by that matrix.
+void choose_branches(Vector& residual, const Vector& wanted, const Eigen::Ref<const Matrix>& inverse, double quantum) {
   constexpr int k_sweeps = 20;
-  Vector gradient = inverse * residual;
+  Vector gradient = inverse * (residual - wanted);
   bool changed = true;
   for (int sweep = 0; changed && sweep < k_sweeps; ++sweep) {
     changed = false;
@@ -63,14 +63,14 @@ struct LoopLimit {
 
 /// Moves one or two residuals at a time by a quantum, the best move first, while loops turn too far that need not, or
 /// the energy falls and no loop turns farther.
-void ease_loops(Vector& residual, const Eigen::Ref<const Matrix>& inverse, double quantum,
+void ease_loops(Vector& residual, const Vector& wanted, const Eigen::Ref<const Matrix>& inverse, double quantum,
                 std::vector<LoopLimit>& limits) {
   constexpr int k_moves = 200;
   constexpr double k_priority = 1e4;  // of loops over energy
   const Eigen::Index count = residual.size();
   const double weight = k_priority * inverse.diagonal().maxCoeff(), least = 1e-9 * quantum * quantum * weight;
   for (int move = 0; move < k_moves; ++move) {
-    const Vector gradient = inverse * residual;
+    const Vector gradient = inverse * (residual - wanted);
     double best = -least;
     Eigen::Index best_i = -1, best_j = -1;
     double step_i = 0, step_j = 0;
@@ -115,7 +115,7 @@ std::vector<double> TrivialConnection::potential_turns(const std::vector<double>
   return result;
 }
 
-std::vector<double> TrivialConnection::turns(std::span<const Index> units, int symmetry,
+std::vector<double> TrivialConnection::turns(std::span<const Index> units, int symmetry, std::span<const double> given,
                                              const std::vector<std::vector<Index>>& gentle, const JobStage& stage) {
   const bool has_handles = !loops_.loops.empty();
   if (has_handles && harmonic_potentials_.empty()) find_harmonic_forms(stage.part(0, 0.8));
@@ -123,7 +123,7 @@ std::vector<double> TrivialConnection::turns(std::span<const Index> units, int s
   for (Index i = 0; i < filled_.node_count; ++i) right[i] = filled_.curvature[i] - k_turn * units[i] / symmetry;
   std::vector<double> result =
       potential_turns(solver_->solve(right, {}, k_accuracy, stage.part(has_handles ? 0.8 : 0, 1)));
-  if (has_handles) add_harmonic_part(result, symmetry, gentle);
+  if (has_handles) add_harmonic_part(result, symmetry, given, gentle);
   return result;
 }
 
@@ -175,18 +175,31 @@ std::vector<double> TrivialConnection::windings_of(const std::vector<Index>& loo
   return {result.begin(), result.end()};
 }
 
-void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmetry,
+/// Returns what the harmonic part of a turning adds up to along each loop: its products with the harmonic forms.
+std::vector<double> TrivialConnection::harmonic_part(std::span<const double> given) const {
+  std::vector<double> result(loops_.loops.size(), 0.0);
+  if (given.empty()) return result;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    for (const Index h : loops_.loops[i]) result[i] += given[h];
+    for (const Index h : inner_edges(mesh_)) result[i] += given[h] * harmonic(i, h);
+  }
+  return result;
+}
+
+void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmetry, std::span<const double> given,
                                           const std::vector<std::vector<Index>>& gentle) const {
   const auto count = static_cast<Eigen::Index>(loops_.loops.size());
   const double quantum = k_turn / symmetry;
+  const std::vector<double> near = harmonic_part(given);
+  const Vector wanted = Eigen::Map<const Vector>(near.data(), count);
   Vector lacking(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     double holonomy = 0;
     for (const Index h : loops_.loops[i]) holonomy += connection_.transport[h] + turns[h];
-    lacking[i] = -std::remainder(holonomy, quantum);
+    lacking[i] = wanted[i] - std::remainder(holonomy + wanted[i], quantum);
   }
   const Eigen::Map<const Matrix> inverse(inverse_periods_.data(), count, count);
-  choose_branches(lacking, inverse, quantum);
+  choose_branches(lacking, wanted, inverse, quantum);
   std::vector<LoopLimit> limits;
   for (const std::vector<Index>& loop : gentle) {
     const std::vector<double> windings = windings_of(loop);
@@ -195,7 +208,7 @@ void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmet
     for (const Index h : loop) turn += turns[h];
     limits.push_back({effect, turn, k_told_share * std::numbers::pi / symmetry * static_cast<double>(loop.size())});
   }
-  if (!limits.empty()) ease_loops(lacking, inverse, quantum, limits);
+  if (!limits.empty()) ease_loops(lacking, wanted, inverse, quantum, limits);
   const Vector shares = inverse * lacking;
   std::vector<double> potential(filled_.node_count, 0.0);
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -24,10 +24,11 @@ class TrivialConnection {
   /// Returns for each half-edge the angle by which a field turns (besides the transport) from its face to the twin's;
   /// opposite for the twin. `units`: of each node of the filled surface the index times the symmetry; around handles
   /// the turning is the smallest that closes. `gentle`: loops of half-edges around which it shall not turn by more than
-  /// k_told_share of pi / symmetry an edge, where whole turns around handles can prevent that. \pre units sum to
-  /// symmetry (2 - 2 genus) in each component. \throw Cancelled.
-  std::vector<double> turns(std::span<const Index> units, int symmetry, const std::vector<std::vector<Index>>& gentle,
-                            const JobStage& stage);
+  /// k_told_share of pi / symmetry an edge, where whole turns around handles can prevent that. `given`: turning of each
+  /// half-edge to which that around handles is near instead of being small; empty for none. \pre units sum to symmetry
+  /// (2 - 2 genus) in each component. \throw Cancelled.
+  std::vector<double> turns(std::span<const Index> units, int symmetry, std::span<const double> given,
+                            const std::vector<std::vector<Index>>& gentle, const JobStage& stage);
 
   /// Returns how often a loop of half-edges goes round each of the loops around handles, in whole numbers; all 0 where
   /// it bounds a part of the surface, and the turning along it is nobody's choice. \pre turns() was called. O(loop
@@ -43,7 +44,9 @@ class TrivialConnection {
   std::vector<double> potential_turns(const std::vector<double>& potential) const;
   double harmonic(std::size_t loop, Index h) const;
   void find_harmonic_forms(const JobStage& stage);
-  void add_harmonic_part(std::vector<double>& turns, int symmetry, const std::vector<std::vector<Index>>& gentle) const;
+  std::vector<double> harmonic_part(std::span<const double> given) const;
+  void add_harmonic_part(std::vector<double>& turns, int symmetry, std::span<const double> given,
+                         const std::vector<std::vector<Index>>& gentle) const;
 
   const Mesh& mesh_;
   const SurfaceConnection& connection_;

@@ -12,9 +12,9 @@ namespace saddleback {
 
 using PowerGraph = std::vector<GraphEdge<std::complex<double>>>;
 
-/// Stiffness of what is drawn softly with weight 1 all through a face, against about 1.7 to each neighbor: fields meet
-/// it to within a degree or two.
-inline constexpr double k_drawn_stiffness = 30;
+/// Stiffness of what is drawn softly with weight 1 all through a face, against about that of the usual tie to each
+/// neighbor: fields meet it to within a degree or two.
+inline constexpr double k_drawn_stiffness = 30, k_usual_tie = 1.7;
 
 /// Holds what draws the value of each face: stiffness 0 for nothing, k_fixed for exactly.
 template <class Scalar>
