@@ -204,10 +204,11 @@ def sees_all(center: Floats, triangles: Floats) -> bool:
 def centers_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
     """On flat convex pieces of the plane: centers of mass against polygons in fractions, if ways in faces are straight.
 
-    That is to the last step of the search. Where a way within a cell's faces bends round one, nothing is claimed.
+    That is to the last step of the search. Where a way within a cell's faces bends round one, nothing is claimed; nor
+    beyond edges of 1e-10 of the cell, about which ways that lead in other directions are alike to 1e-12.
     """
     found = exact_plane_cells(mesh, rng)
-    if found is None:
+    if found is None or mesh.edge_lengths.min() < 1e-10 * longest_edge(mesh):
         return
     cells, places, polygons = found
     flat = mesh.vertices[mesh.triangles][:, :, :2]

@@ -299,6 +299,7 @@ Cancelled
 
 Notes
 -----
+To a millionth of the cell's size where it is flat, unless the center is beside edges of 1e-10 of that.
 O(f log f) for f faces of a cell. After [karcher1977].)";
 
 constexpr const char* k_center_doc = R"(Find the point from which squared geodesic distances to points are least in sum.

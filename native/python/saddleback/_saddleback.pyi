@@ -1888,6 +1888,7 @@ class GeodesicVoronoi:
 
         Notes
         -----
+        To a millionth of the cell's size where it is flat, unless the center is beside edges of 1e-10 of that.
         O(f log f) for f faces of a cell. After [karcher1977].
         """
     def dual(

@@ -66,6 +66,16 @@ def test_cells_of_the_plane_have_their_centroids() -> None:
     assert (painted[:, 0] > centroids[:, 0]).all()
 
 
+@pytest.mark.parametrize("seed", [19, 25, 35, 37, 74, 87, 101])
+def test_centers_where_ways_become_straight_bit_by_bit(seed: int) -> None:
+    """Rings of three, so that corners are placed again and again, each time by a straighter way: masses balance."""
+    mesh = sb.Mesh(*meshes.graded_disk(0.007, 10, 3))
+    sites = sb.sample(mesh, 2, seed=seed)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True)
+    balance = cells.areas @ cells.centers().positions(mesh) / mesh.area
+    np.testing.assert_allclose(balance, 0, atol=1e-9)
+
+
 def test_relaxed_sites_lie_at_the_centers() -> None:
     """Two ways to the same points: moments by the graph's maps, and maps of patches."""
     mesh = sb.Mesh(*meshes.torus(72, 30))

@@ -19,8 +19,8 @@ constexpr double k_far = std::numeric_limits<double>::infinity();
 constexpr double k_on_edge = 1e-6;
 // A vertex that is placed already is placed again when another way is shorter by more than rounding. That is more where
 // an edge is short beside its distance, and makes vertices beside it nearer in turn without end: from the eighth time
-// on each has to gain twice as much as the last.
-constexpr double k_rounding = 1e-12, k_first_gain = k_rounding / 256;
+// on each that gains little has to gain twice as much as the last. What gains more is mostly a straighter way.
+constexpr double k_rounding = 1e-12, k_first_gain = k_rounding / 256, k_little = 1e-5, k_rise = 1.1;
 // Odd, so that vertices next to each other in number fall into slots of their own.
 constexpr std::uint32_t k_spread = 2654435761U;
 
@@ -178,8 +178,8 @@ void PatchLog::offer(const Way& way, const Vec2& place, double distance) {
   const Index vertex = way.vertex;
   last_way_[vertex] = static_cast<Index>(ways_.size());
   ways_.push_back(way);
+  gains_[vertex] *= distance < (1 - k_little) * distances_[vertex] ? k_rise : 2;
   distances_[vertex] = distance;
-  gains_[vertex] *= 2;
   places_[vertex] = place;
   changed_[vertex] = visits_;
   heap_.push_back({distance, vertex});
