@@ -92,6 +92,7 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
   const std::size_t kept = cells.sites.size(), most = k_most_added + k_most_added_each * kept;
   std::vector<Index> fixed(kept);
   std::iota(fixed.begin(), fixed.end(), 0);
+  CellCache cache;  // from round to round, cells away from new sites stay
   for (int round = 0; round < k_repair_rounds; ++round) {
     const std::vector<DualIssue> issues = find_dual_issues(mesh, current, stage);
     SurfacePoints sites = current.sites;
@@ -111,6 +112,7 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
     options.method = RelaxationMethod::lloyd;
     options.stop.max_iterations = k_settling_steps;
     options.threads = threads;
+    options.cache = &cache;
     current = relaxed_cells(graph, sites, options, part);
   }
   DualMesh result = dual_of(mesh, current, stage);
