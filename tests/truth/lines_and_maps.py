@@ -91,7 +91,9 @@ def curvatures(mesh: sb.Mesh, rng: Random) -> None:
 
 @guards("feature_curves", "SurfaceCurve")
 def feature_lines(mesh: sb.Mesh, rng: Random) -> None:
-    """The edges that bend by more than the angle, each once, in curves as long as their polylines."""
+    """The edges that bend by more than the angle, each once, in curves as long as their polylines; with a least length,
+    those that hang together with so much, and the border.
+    """
     angle = float(rng.uniform(0.1, 3.0))
     p = mesh.vertices[mesh.triangles]
     normals = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
@@ -108,8 +110,36 @@ def feature_lines(mesh: sb.Mesh, rng: Random) -> None:
     wanted = {edge for edge, bend in bends.items() if bend > angle + 1e-6}
     possible = wanted | {edge for edge, bend in bends.items() if bend > angle - 1e-6}
     border = {edge for edge, count in edge_counts(mesh.triangles).items() if count == 1}
+    found = feature_edges(mesh, sb.feature_curves(mesh, angle))
+    assert len(found) == len(set(found))
+    assert wanted | border <= set(found) <= possible | border
+    lengths = {edge: float(np.linalg.norm(np.subtract(*mesh.vertices[list(edge)]))) for edge in found}
+    least = float(rng.uniform(0, 4)) * mesh.mean_edge_length
+    kept = set(feature_edges(mesh, sb.feature_curves(mesh, angle, least_length=least)))
+    assert border <= kept <= set(found)
+    for network in connected(found):
+        total = sum(lengths[edge] for edge in network)
+        if abs(total - least) > 1e-9 * least:
+            assert network - border <= kept if total > least else not (network - border) & kept
+
+
+def connected(edges: list[tuple[int, int]]) -> list[set[tuple[int, int]]]:
+    """The edges by what hangs together."""
+    left, networks = set(edges), []
+    while left:
+        network, ends = set(), set(next(iter(left)))
+        while more := {edge for edge in left if ends & set(edge)}:
+            network |= more
+            left -= more
+            ends |= {vertex for edge in more for vertex in edge}
+        networks.append(network)
+    return networks
+
+
+def feature_edges(mesh: sb.Mesh, curves: list[sb.SurfaceCurve]) -> list[tuple[int, int]]:
+    """The edges of curves along them, each by its vertices; lengths are those of the edges."""
     found: list[tuple[int, int]] = []
-    for curve in sb.feature_curves(mesh, angle):
+    for curve in curves:
         corners = mesh.triangles[curve.points.faces, curve.points.barycentric.argmax(axis=1)]
         assert (curve.points.barycentric.max(axis=1) == 1).all()
         steps = list(pairwise(corners))
@@ -118,8 +148,7 @@ def feature_lines(mesh: sb.Mesh, rng: Random) -> None:
         found += [(min(a, b), max(a, b)) for a, b in ((int(a), int(b)) for a, b in steps)]
         length = sum(float(np.linalg.norm(mesh.vertices[a] - mesh.vertices[b])) for a, b in steps)
         assert abs(curve.length - length) <= 1e-12 * length
-    assert len(found) == len(set(found))
-    assert wanted | border <= set(found) <= possible | border
+    return found
 
 
 @guards("streamline", "Streamline")

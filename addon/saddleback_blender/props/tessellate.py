@@ -164,7 +164,10 @@ TESSELLATE: dict[str, Any] = {
     "sites_object": name_of("Sites Object", "The object whose vertices become sites"),
     "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", False),
     "hold_sharp": switch(
-        "Sharp Edges", "Keep sites on edges at which the surface bends much: a remesh has them", False
+        "Sharp Edges",
+        "Keep sites on edges at which the surface bends much: a remesh has them. "
+        "Lines shorter than two cells are left out",
+        False,
     ),
     "sharp_angle": FloatProperty(
         name="Sharp Angle",

@@ -407,14 +407,16 @@ Args:
     boundary: whether the mesh's boundary is such a line.
     edges: (n, 2) vertices of more such edges.
     corner_angle: radians, 0 to pi.
+    least_length: lines are left out where all that hang together are shorter, but for the boundary and the given edges:
+        noise of scans, or details that a coarse remesh cannot show. About twice the size of a cell, for example.
 
 For `centroidal_voronoi(curves=...)`, whose sites then stay on these lines. O(V + F).
 
 Raises:
-    InputError: an angle out of range; two vertices in `edges` that no edge joins.)";
+    InputError: an angle out of range; a length below 0; two vertices in `edges` that no edge joins.)";
 
 py::list feature_curves_of(const py::object& mesh_object, const py::object& angle, bool boundary,
-                           const py::object& edges, const py::object& corner_angle) {
+                           const py::object& edges, const py::object& corner_angle, const py::object& least_length) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   std::vector<std::array<Index, 2>> given;
   if (!edges.is_none()) {
@@ -426,6 +428,7 @@ py::list feature_curves_of(const py::object& mesh_object, const py::object& angl
   options.boundary = boundary;
   options.edges = given;
   options.corner_angle = as_real(corner_angle, "corner_angle");
+  options.least_length = as_real(least_length, "least_length");
   std::vector<SurfaceCurve> found = without_gil([&] { return feature_curves(mesh, options); });
   py::list result;
   for (SurfaceCurve& curve : found) {
@@ -457,7 +460,8 @@ void bind_curve(py::module_& m) {
   const FeatureCurveOptions defaults;
   m.def("feature_curves", &feature_curves_of, py::arg("mesh"), py::arg("angle") = defaults.angle, py::kw_only(),
         py::arg("boundary") = defaults.boundary, py::arg("edges") = py::none(),
-        py::arg("corner_angle") = defaults.corner_angle, k_feature_doc);
+        py::arg("corner_angle") = defaults.corner_angle, py::arg("least_length") = defaults.least_length,
+        k_feature_doc);
   let_travel<SurfaceCurve>(m, "SurfaceCurve", &save_curve,
                            [](const py::tuple& state) { return py::type::of<SurfaceCurve>()(*as_state(state, 3)); });
 }

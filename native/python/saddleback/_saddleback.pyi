@@ -518,6 +518,7 @@ def feature_curves(
     boundary: bool = True,
     edges: ArrayLike | None = None,
     corner_angle: SupportsFloat = ...,
+    least_length: SupportsFloat = 0.0,
 ) -> list[SurfaceCurve]:
     """The lines of a mesh that a remesh should keep, as a list of SurfaceCurve.
 
@@ -531,11 +532,13 @@ def feature_curves(
         boundary: whether the mesh's boundary is such a line.
         edges: (n, 2) vertices of more such edges.
         corner_angle: radians, 0 to pi.
+        least_length: lines are left out where all that hang together are shorter, but for the boundary and the given edges:
+            noise of scans, or details that a coarse remesh cannot show. About twice the size of a cell, for example.
 
     For `centroidal_voronoi(curves=...)`, whose sites then stay on these lines. O(V + F).
 
     Raises:
-        InputError: an angle out of range; two vertices in `edges` that no edge joins.
+        InputError: an angle out of range; a length below 0; two vertices in `edges` that no edge joins.
     """
 
 @final

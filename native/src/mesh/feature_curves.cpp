@@ -6,6 +6,7 @@
 #include "saddleback/error.h"
 
 #include "mesh/tables/outgoing.h"
+#include "support/disjoint_sets.h"
 
 namespace saddleback {
 namespace {
@@ -35,7 +36,14 @@ class FeatureGraph {
                                                          normal(mesh, Mesh::face_of(twin))) > options.angle;
       if (wanted) mark(h);
     }
-    for (std::size_t i = 0; i < options.edges.size(); ++i) mark(given_edge(mesh, options.edges[i], i));
+    std::vector<std::uint8_t> is_kept(mesh.halfedge_count(), 0);
+    for (std::size_t i = 0; i < options.edges.size(); ++i) {
+      const Index h = given_edge(mesh, options.edges[i], i);
+      mark(h);
+      is_kept[h] = 1;
+      if (mesh.twin(h) != k_none) is_kept[mesh.twin(h)] = 1;
+    }
+    if (options.least_length > 0) drop_short(options.least_length, is_kept);
     link();
   }
 
@@ -61,9 +69,22 @@ class FeatureGraph {
   }
 
  private:
-  void mark(Index h) {
-    is_feature_[h] = 1;
-    if (mesh_.twin(h) != k_none) is_feature_[mesh_.twin(h)] = 1;
+  void mark(Index h, std::uint8_t is_feature = 1) {
+    is_feature_[h] = is_feature;
+    if (mesh_.twin(h) != k_none) is_feature_[mesh_.twin(h)] = is_feature;
+  }
+
+  /// Edges within the surface that hang together, and are shorter in all, are no features; but for those to be kept.
+  void drop_short(double least_length, const std::vector<std::uint8_t>& is_kept) {
+    DisjointSets sets(mesh_.vertex_count());
+    std::vector<double> length(mesh_.vertex_count(), 0.0);
+    for (const Index h : mesh_.edge_halfedges())
+      if (is_feature_[h]) sets.join(mesh_.from(h), mesh_.to(h));
+    for (const Index h : mesh_.edge_halfedges())
+      if (is_feature_[h]) length[sets.root(mesh_.from(h))] += mesh_.length(h);
+    for (const Index h : mesh_.edge_halfedges())
+      if (is_feature_[h] && !is_kept[h] && mesh_.twin(h) != k_none && length[sets.root(mesh_.from(h))] < least_length)
+        mark(h, 0);
   }
 
   /// Neighbors along feature edges, by vertex.
@@ -128,6 +149,8 @@ std::vector<SurfaceCurve> feature_curves(const Mesh& mesh, const FeatureCurveOpt
   mesh.require_space("feature_curves");
   check_angle("angle", options.angle);
   check_angle("corner_angle", options.corner_angle);
+  if (!(options.least_length >= 0) || std::isinf(options.least_length))
+    throw InputError(message("least_length: wanted a finite length of 0 or more, got ", options.least_length));
   std::vector<SurfaceCurve> curves;
   for (const FeatureGraph::Chain& chain : FeatureGraph(mesh, options).chains()) {
     SurfacePoints points;

@@ -103,6 +103,23 @@ def test_chosen_edges() -> None:
     assert sb.feature_curves(mesh, math.pi, edges=np.empty((0, 2), np.int32)) == []
 
 
+def test_short_lines_are_left_out() -> None:
+    """A box with a dent of one vertex in a face: the edges about the dent are many, and short in all."""
+    vertices, triangles = box(4).vertices.copy(), box(4).triangles
+    top = np.append(vertices[:, :2].mean(axis=0), vertices[:, 2].max())
+    dent = int(np.linalg.norm(vertices - top, axis=1).argmin())
+    vertices[dent, 2] -= 0.1 * np.ptp(vertices[:, 2])
+    mesh = sb.Mesh(vertices, triangles)
+    every, few = sb.feature_curves(mesh), sb.feature_curves(mesh, least_length=2.0 * np.ptp(vertices[:, 2]))
+    assert len(every) > len(few) == 12
+    assert sb.feature_curves(mesh, least_length=1e9) == []
+    around = np.flatnonzero((triangles == dent).any(axis=1))[:1]
+    edge = [[dent, int(next(v for v in triangles[around[0]] if v != dent))]]
+    (kept,) = sb.feature_curves(mesh, least_length=1e9, edges=edge)
+    assert set(vertices_of(mesh, kept)) == set(edge[0])
+    assert len(sb.feature_curves(sb.Mesh(*meshes.grid(9, 9)), least_length=1e9)) == 4, "the border stays"
+
+
 def test_a_remesh_of_a_box_keeps_its_edges() -> None:
     """The dual's edges along the box's are chords of straight lines: volume and area are the box's."""
     mesh = box(4)
@@ -131,6 +148,8 @@ def volume(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> float
         ({"angle": math.nan}, "angle: wanted radians"),
         ({"angle": "sharp"}, "angle"),
         ({"corner_angle": 4.0}, "corner_angle: wanted radians from 0 to pi, got 4"),
+        ({"least_length": -1.0}, "least_length: wanted a finite length of 0 or more, got -1"),
+        ({"least_length": math.inf}, "least_length: wanted a finite length of 0 or more, got inf"),
         ({"edges": [[0, 99]]}, "edges: wanted vertices from 0 to 7, got 99 in edge 0"),
         ({"edges": [[0, 0]]}, "no edge of the mesh joins vertices 0 and 0 of edge 0"),
         ({"edges": [0, 1]}, "edges: wanted shape"),

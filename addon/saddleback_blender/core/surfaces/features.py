@@ -14,6 +14,9 @@ from ..results import Indices
 from ..settings import TessellateSettings
 from ..solids.mesh_edges import directed_edges, edge_keys
 
+# Of a cell's size: sharp lines that are shorter in all are noise, or more than cells of that size can show.
+SEEN_LENGTH = 2.0
+
 
 def feature_lines(surface: Surface, mesh: Any, settings: TessellateSettings, marked: Indices | None) -> list[Any]:
     """Curves on the library's mesh; none where none are wanted. `marked` (n, 2) speaks of the Blender mesh."""
@@ -21,7 +24,11 @@ def feature_lines(surface: Surface, mesh: Any, settings: TessellateSettings, mar
         return []
     angle = settings.sharp_angle if settings.hold_sharp else math.pi
     edges = None if marked is None else _edges_of_faces(surface, marked)
-    curves: list[Any] = native.load().feature_curves(mesh, angle, boundary=settings.hold_boundary, edges=edges)
+    smaller_by = settings.density_smaller_by if settings.density_source != "UNIFORM" else 1.0
+    size = math.sqrt(mesh.area / max(settings.count, 1)) / max(smaller_by, 1.0)
+    curves: list[Any] = native.load().feature_curves(
+        mesh, angle, boundary=settings.hold_boundary, edges=edges, least_length=SEEN_LENGTH * size
+    )
     return curves
 
 
