@@ -86,6 +86,24 @@ def test_the_same_bytes_for_any_circles_and_threads(kind):
     assert len(results) == 1
 
 
+def test_many_disks_side_by_side_are_right():
+    """Threads exchange triangles of different sites, then those between them: a quarter of the disks are hidden."""
+    count, rng = 40_000, np.random.default_rng(12)
+    sites, weights = rng.random((count, 2)), 1.2 * rng.random(count) / np.sqrt(count)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    for vertex in rng.choice(len(diagram.vertices), 500, replace=False):
+        about = np.unique(diagram.edge_sites[(diagram.edges == vertex).any(axis=1)])
+        distances = weighted_distances(diagram.vertices[vertex][None], sites, weights)[0]
+        assert len(about) >= 3
+        assert np.abs(distances[about] - distances.min()).max() <= 1e-9
+    assert len(diagram.hidden) > count / 10
+    for threads in (2, 3, 8):
+        other = sb.voronoi_2d(sites, weights, threads=threads)
+        for name in ("vertices", "edges", "edge_sites", "site_of", "hidden"):
+            assert getattr(other, name).tobytes() == getattr(diagram, name).tobytes()
+        assert [part.tobytes() for part in other.cells] == [part.tobytes() for part in diagram.cells]
+
+
 @pytest.mark.parametrize("weight", [0, -3.5, 1e6])
 def test_equal_weights_are_none(weight):
     sites = plane_sites.grid(400, np.random.default_rng(1))

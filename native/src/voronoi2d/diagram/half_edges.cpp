@@ -45,7 +45,7 @@ Numbering strips_of(const OrderedSites& sites, const JobStage& stage) {
 }
 
 /// Cells in a row, whose numbers follow each other.
-struct Piece {
+struct alignas(k_apart) Piece {
   Index begin, end;
   Index corners = 0, vertices = 0, edges = 0;               ///< how many come before
   std::vector<Index> deferred_sides{}, deferred_corners{};  ///< whose numbers are given in other pieces
@@ -117,7 +117,7 @@ class Numberer {
   static constexpr Index k_ahead = 2048;   ///< sites: about a tile
   static constexpr Index k_few = 1 << 15;  ///< sites whose edges need not wait until the triangles leave their room
   /// A worker's memory.
-  struct Scratch {
+  struct alignas(k_apart) Scratch {
     CellBlock cells;
     std::vector<Index> around, triangles;       ///< of a large vertex: sites and places of its triangles' number
     Index first_half = k_none;                  ///< of those about it that no triangle of it is behind

@@ -9,8 +9,8 @@
 
 #include "saddleback/error.h"
 
-#include "support/threads/parallel.h"
 #include "voronoi2d/sites/curve_order.h"
+#include "voronoi2d/sites/for_pieces.h"
 
 namespace saddleback::voronoi2d {
 namespace {
@@ -50,20 +50,6 @@ struct Range {
         throw InputError(
             message("sites: coordinate ", k, " of site ", i, " is ", sites[i][k], ", wanted a finite number"));
   throw Error("sites: not finite, and finite when looked at again");
-}
-
-constexpr std::size_t k_piece = std::size_t{1} << 16;
-
-/// Calls work(piece, begin, end) for each piece of `count` things.
-template <class Work>
-void for_pieces(std::size_t count, int threads, const JobStage& stage, Work&& work) {
-  const Index pieces = static_cast<Index>((count + k_piece - 1) / k_piece);
-  parallel_for(pieces, threads, 1, [&](Index piece, int) {
-    stage.update(piece / static_cast<double>(pieces));
-    const std::size_t begin = piece * k_piece;
-    work(piece, begin, std::min(count, begin + k_piece));
-  });
-  stage.update(1);
 }
 
 Range check(std::span<const Vec2> sites, int threads, const JobStage& stage) {

@@ -1,8 +1,8 @@
 #pragma once
 // Weights of sites, and what they decide where several sites share a place.
 
+#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "saddleback/support/large_array.h"
 #include "saddleback/types.h"
@@ -16,8 +16,8 @@ void check_weights(std::span<const Vec2> sites, std::span<const double> weights)
 
 /// Finds at each place the heaviest site, of equal ones the smallest index. `ordered` knows the places.
 struct Heaviest {
-  LargeArray<Index> original;   ///< by rank of the place
-  std::vector<bool> is_hidden;  ///< by index
+  LargeArray<Index> original;          ///< by rank of the place
+  LargeArray<std::uint8_t> is_hidden;  ///< by index
 };
 Heaviest heaviest_by_place(const OrderedSites& ordered, std::span<const double> weights);
 

@@ -6,6 +6,7 @@
 
 #include "saddleback/job.h"
 
+#include "support/threads/parallel.h"
 #include "voronoi2d/sweep/planar_mesh.h"
 
 namespace saddleback::voronoi2d {
@@ -25,7 +26,7 @@ struct MeshPart {
 };
 
 /// Joins parts that a level or an upright line parts.
-class MeshJoiner {
+class alignas(k_apart) MeshJoiner {
  public:
   /// Joins meshes: of the mesh only the arrays matter; bit k of `twins[4 t + 3]` is set where edge k and the one beyond
   /// have one circle. `leaving`: by site a half-edge from there, along the border for those on it.

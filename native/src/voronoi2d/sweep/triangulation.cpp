@@ -73,7 +73,7 @@ class SquareTree {
 };
 
 /// Triangulates tiles into the arrays of all.
-class TileSweeper {
+class alignas(k_apart) TileSweeper {
  public:
   TileSweeper(const OrderedSites& sites, Triangulation& result, MeshJoiner& joiner)
       : sites_(sites), result_(result), joiner_(joiner) {}

@@ -8,6 +8,7 @@
 #include "saddleback/error.h"
 
 #include "support/threads/parallel.h"
+#include "voronoi2d/sites/for_pieces.h"
 
 namespace saddleback::voronoi2d {
 namespace {
@@ -15,12 +16,8 @@ namespace {
 /// Finds cells, a block of sites in a row after the other.
 class CellFinder {
  public:
-  CellFinder(const WeightedSites& sites, const DiskTree& tree) : points_(sites.points), tree_(tree) {
-    double heaviest = 0;
-    for (const DiskTree::Disk& disk : tree.widest()) heaviest = std::max(heaviest, std::fabs(disk.radius));
-    for (const predicates::WeightedPoint2& point : points_) heaviest = std::max(heaviest, std::fabs(point.weight));
-    slack_ = k_slack * heaviest;
-  }
+  CellFinder(const WeightedSites& sites, const DiskTree& tree, double heaviest)
+      : points_(sites.points), tree_(tree), slack_(k_slack * heaviest) {}
 
   /// Collects the rows of sites that matter to the sites of a block, if their cells are not larger than usual.
   void open_block(Index begin, Index end) {
@@ -80,20 +77,31 @@ class CellFinder {
   }
   std::span<const predicates::WeightedPoint2> points_;
   const DiskTree& tree_;
-  double slack_ = 0;  ///< more than the rounding of a difference of weights
+  double slack_;  ///< more than the rounding of a difference of weights
   double usual_far_ = 0;
   std::vector<Index> rows_;
 };
 
-OrderedSites places_of(const WeightedSites& sites) {
+/// The largest size of a weight or of the radius of a disk about all.
+double heaviest_of(const WeightedSites& sites, const DiskTree& tree) {
+  double result = 0;
+  for (const DiskTree::Disk& disk : tree.widest()) result = std::max(result, std::fabs(disk.radius));
+  for (const predicates::WeightedPoint2& point : sites.points) result = std::max(result, std::fabs(point.weight));
+  return result;
+}
+
+OrderedSites places_of(const WeightedSites& sites, int threads) {
   OrderedSites result;
-  result.places = sites.places;
-  result.x.reserve(sites.points.size());
-  result.y.reserve(sites.points.size());
-  for (const predicates::WeightedPoint2& point : sites.points) {
-    result.x.push_back(point.x);
-    result.y.push_back(point.y);
-  }
+  result.places.resize(sites.points.size());
+  result.x.resize(sites.points.size());
+  result.y.resize(sites.points.size());
+  for_pieces(sites.points.size(), threads, {}, [&](Index, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      result.places[i] = sites.places[i];
+      result.x[i] = sites.points[i].x;
+      result.y[i] = sites.points[i].y;
+    }
+  });
   return result;
 }
 
@@ -102,8 +110,12 @@ OrderedSites places_of(const WeightedSites& sites) {
 }  // namespace
 
 WeightedCells::WeightedCells(const WeightedSites& sites, Index tile_size, int threads, const JobStage& stage)
-    : sites_(sites), tree_(sites.points), threads_(threads), exact_of_(sites.count(), k_none) {
-  const OrderedSites places = places_of(sites_);
+    : sites_(sites),
+      tree_(sites.points, threads),
+      heaviest_(heaviest_of(sites, tree_)),
+      threads_(threads),
+      exact_of_(sites.count(), k_none) {
+  const OrderedSites places = places_of(sites_, threads_);
   Triangulation triangulation = triangulate(places, tile_size, threads_, stage.part(0, 0.5));
   if (triangulation.is_line) {
     line_ = neighbors_of(triangulation, places, stage.part(0.5, 0.8));
@@ -130,12 +142,13 @@ void WeightedCells::find_exactly(const std::vector<Index>& wanted, const JobStag
   const Index first = static_cast<Index>(exact_.size());
   exact_.resize(exact_.size() + wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) exact_of_[wanted[i]] = first + static_cast<Index>(i);
-  struct Worker {
+  struct alignas(k_apart) Worker {
     CellFinder finder;
     WeightedCell cell;
     std::vector<Index> guess{};
   };
-  std::vector<Worker> workers(thread_count(threads_), Worker{CellFinder(sites_, tree_), WeightedCell(stage)});
+  std::vector<Worker> workers(thread_count(threads_),
+                              Worker{CellFinder(sites_, tree_, heaviest_), WeightedCell(stage)});
   const Index count = static_cast<Index>(wanted.size()), blocks = (count + k_few - 1) / k_few;
   std::atomic<Index> done{0};
   parallel_for(blocks, threads_, 1, [&](Index block, int thread) {
@@ -192,14 +205,13 @@ bool fits(Index neighbor, const std::vector<Index>& in_mesh, const std::vector<I
 
 /// Sites whose cells in the mesh do not fit to cells that have just been found.
 std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found, const JobStage& stage) {
-  std::vector<Index> result, in_mesh, in_cell;
-  const auto check = [&](Index site) {
-    stage.check();
-    if (site == far_away() || is_exact(site) || fits(site, in_mesh, in_cell)) return;
-    exact_of_[site] = k_wanted;
-    result.push_back(site);
+  struct alignas(k_apart) Worker {
+    std::vector<Index> misfits{}, in_mesh{}, in_cell{};
   };
-  for (const Index site : found) {
+  std::vector<Worker> workers(thread_count(threads_));
+  parallel_for(static_cast<Index>(found.size()), threads_, k_few, [&](Index i, int thread) {
+    const Index site = found[i];
+    auto& [misfits, in_mesh, in_cell] = workers[thread];
     in_mesh.clear();
     in_cell.clear();
     mesh_->visit_ring(site, [&](Index neighbor, Index) { in_mesh.push_back(neighbor); });
@@ -207,8 +219,21 @@ std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found, const
       in_cell.push_back(side.neighbor);
       if (side.is_open) in_cell.push_back(far_away());
     }
+    const auto check = [&](Index neighbor) {
+      stage.check();
+      if (neighbor != far_away() && !is_exact(neighbor) && !fits(neighbor, in_mesh, in_cell))
+        misfits.push_back(neighbor);
+    };
     for (const Index neighbor : in_mesh) check(neighbor);
     for (const Index neighbor : in_cell) check(neighbor);
+  });
+  std::vector<Index> result;
+  for (const Worker& worker : workers) {
+    for (const Index site : worker.misfits) {
+      if (is_exact(site)) continue;
+      exact_of_[site] = k_wanted;
+      result.push_back(site);
+    }
   }
   std::sort(result.begin(), result.end());
   return result;
@@ -216,18 +241,17 @@ std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found, const
 
 /// Places the cells; where cells of the mesh are next to them, edges and vertices have the mesh's places.
 void WeightedCells::place_exact_cells(const JobStage& stage) {
-  if (mesh_) {
-    vertex_place_count_ = mesh_->triangle_count();
-    edge_place_count_ = 4 * vertex_place_count_;
-  }
+  vertex_place_count_ = in_mesh();
+  edge_place_count_ = 4 * vertex_place_count_;
   std::vector<Index> sites(exact_.size());
   for (Index site = 0; site < sites_.count(); ++site)
     if (is_exact(site)) sites[exact_of_[site]] = site;
-  for (const Index site : sites) {
-    Exact& cell = exact_[exact_of_[site]];
+  parallel_for(static_cast<Index>(sites.size()), threads_, k_few, [&](Index i, int) {
+    Exact& cell = exact_[i];
+    cell.placed.reserve(cell.sides.size());
     for (const WeightedCell::Side& side : cell.sides) cell.placed.push_back({side.neighbor, k_none, k_none});
-    if (mesh_) place_by_mesh(site, cell, stage);
-  }
+    if (mesh_) place_by_mesh(sites[i], cell, stage);
+  });
   for (const Index site : sites) {
     for (Index side = 0; side < static_cast<Index>(exact_[exact_of_[site]].sides.size()); ++side) {
       stage.check();
@@ -291,30 +315,35 @@ void WeightedCells::place_vertex(Index site, Index side) {
     corner = before(exact_[exact_of_[walk]], twin);
   } while (walk != site || corner != side);
   ++vertex_place_count_;
-  positions_.push_back(position);
+  vertices_.push_back({position, lowest});
 }
 
-void WeightedCells::read(Index site, std::vector<Side>& sides) const {
+void WeightedCells::read(Index site, LargeArray<Side>& sides) const {
   if (is_exact(site)) {
-    sides = exact_[exact_of_[site]].placed;
+    const std::vector<Side>& placed = exact_[exact_of_[site]].placed;
+    sides.insert(sides.end(), placed.begin(), placed.end());
     return;
   }
-  sides.clear();
-  Index last = mesh_->last_in_ring(site), lowest = far_away(), first = 0;
+  const auto begin = static_cast<std::ptrdiff_t>(sides.size());
+  auto first = begin;
+  Index last = mesh_->last_in_ring(site), lowest = far_away();
   mesh_->visit_ring(site, [&](Index neighbor, Index half) {
     const Index twin = previous_half(last);
     last = half;
     if (neighbor == far_away()) return;
-    first = neighbor < lowest ? static_cast<Index>(sides.size()) : first;
+    first = neighbor < lowest ? static_cast<std::ptrdiff_t>(sides.size()) : first;
     lowest = std::min(lowest, neighbor);
     sides.push_back({neighbor, site < neighbor ? twin : half, mesh_->is_far(half / 4) ? k_none : half / 4});
   });
-  std::rotate(sides.begin(), sides.begin() + first, sides.end());
+  std::rotate(sides.begin() + begin, sides.begin() + first, sides.end());
+}
+
+Index WeightedCells::lowest_about(Index vertex) const {
+  return vertex < in_mesh() ? mesh_->lowest_about(vertex) : vertices_[vertex - in_mesh()].lowest;
 }
 
 Vec2 WeightedCells::position(Index vertex) const {
-  const Index in_mesh = mesh_ ? mesh_->triangle_count() : 0;
-  return vertex < in_mesh ? mesh_->corner(vertex) : positions_[vertex - in_mesh];
+  return vertex < in_mesh() ? mesh_->corner(vertex) : vertices_[vertex - in_mesh()].position;
 }
 
 }  // namespace saddleback::voronoi2d

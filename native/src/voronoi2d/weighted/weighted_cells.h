@@ -28,8 +28,10 @@ class WeightedCells {
     Index edge;    ///< place of the edge
     Index vertex;  ///< place of the vertex, k_none at infinity
   };
-  /// A cell by rank, from its lowest neighbor on. O(sides).
-  void read(Index site, std::vector<Side>& sides) const;
+  /// Appends a cell, by rank, from its lowest neighbor on. O(sides).
+  void read(Index site, LargeArray<Side>& sides) const;
+  /// Returns the lowest of the cells about the vertex of a place.
+  Index lowest_about(Index vertex) const;
   /// Returns where the vertex of a place lies, times the sites' scale.
   Vec2 position(Index vertex) const;
   Index edge_place_count() const { return edge_place_count_; }
@@ -57,15 +59,23 @@ class WeightedCells {
   static Index before(const Exact& cell, Index side);
   bool is_exact(Index site) const { return exact_of_[site] != k_none; }
   Index far_away() const { return sites_.count(); }
+  /// Vertices of so many places, the first ones, are the mesh's.
+  Index in_mesh() const { return mesh_ ? mesh_->triangle_count() : 0; }
 
   const WeightedSites& sites_;
   DiskTree tree_;
+  double heaviest_;
   int threads_;
   std::optional<WeightedMesh> mesh_;
   NeighborLists line_;          ///< instead, where all sites are on one
   LargeArray<Index> exact_of_;  ///< by rank: where its cell is, k_none for those of the mesh
   std::vector<Exact> exact_;
-  std::vector<Vec2> positions_;  ///< of vertices that are not in the mesh
+  /// A vertex that is not in the mesh.
+  struct Vertex {
+    Vec2 position;
+    Index lowest;  ///< of the cells about it
+  };
+  std::vector<Vertex> vertices_;
   Index edge_place_count_ = 0, vertex_place_count_ = 0;
 };
 

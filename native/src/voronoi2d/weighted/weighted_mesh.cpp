@@ -14,8 +14,9 @@ using predicates::WeightedPoint2;
 
 namespace {
 
-constexpr Index k_block = 4096;      ///< triangles that stay in a core's cache
-constexpr std::size_t k_ahead = 16;  ///< half-edges
+constexpr Index k_sites = 2048;         ///< side by side, whose triangles stay in a core's cache
+constexpr Index k_block = 2 * k_sites;  ///< their triangles, but for some at the border
+constexpr std::size_t k_ahead = 16;     ///< half-edges
 
 }  // namespace
 
@@ -173,44 +174,51 @@ void WeightedMesh::find_centers(Index begin, Index end) {
   }
 }
 
-/// Finds all centers, and half-edges that are no sides. Returns how often the ways of all sites pass the x axis.
-std::int64_t WeightedMesh::find_sides(std::vector<Index>& bad, int threads, const JobStage& stage) {
-  struct Worker {
-    std::vector<Index> bad{}, deferred{};  ///< half-edges; `deferred` lead from block to block
-    std::int64_t passed = 0;
+std::vector<WeightedMesh::Exchanges> WeightedMesh::blocks_of(Index size, Index count) {
+  std::vector<Exchanges> result;
+  for (Index begin = 0; begin < count; begin += std::min(size, count - begin))
+    result.push_back({begin, begin + std::min(size, count - begin)});
+  return result;
+}
+
+/// Finds all centers, and half-edges that are no sides.
+std::vector<WeightedMesh::Exchanges> WeightedMesh::find_sides(int threads, const JobStage& stage) {
+  const Index count = triangle_count();
+  std::vector<Exchanges> result = blocks_of(k_sites, far_away() + 1);
+  std::vector<std::vector<Index>> deferred(result.size());  // half-edges that lead from block to block
+  const auto look_at = [&](Index half, Exchanges& block) {
+    if (is_side(half, block.turns)) return;
+    const Index from = mesh_.corners[half], to = mesh_.corners[next_half(half)];
+    const bool is_here = std::min(from, to) >= block.begin && std::max(from, to) < block.end;
+    (is_here ? block.wanted : block.beyond).push_back(half);
   };
-  std::vector<Worker> workers(thread_count(threads));
-  const Index count = triangle_count(), blocks = (count + k_block - 1) / k_block;
-  parallel_for(blocks, threads, 1, [&](Index block, int thread) {
-    stage.update(block / static_cast<double>(blocks));
-    const Index begin = block * k_block, end = std::min(count, begin + k_block);
+  const Index blocks = static_cast<Index>(result.size());
+  parallel_for(blocks, threads, 1, [&](Index i, int) {
+    stage.update(0.9 * i / static_cast<double>(blocks));
+    const Index begin = std::min(count, i * k_block), end = std::min(count, begin + k_block);
     find_centers(begin, end);
-    Worker& worker = workers[thread];
+    std::vector<Index> later;
     for (Index triangle = begin; triangle < end; ++triangle) {
       if (mesh_.corners[4 * triangle] == k_none) continue;
       for (Index half = 4 * triangle; half < 4 * triangle + 3; ++half) {
         if (mesh_.twins[half] < half) continue;
         if (mesh_.twins[half] >= 4 * end) {
-          worker.deferred.push_back(half);
-        } else if (!is_side(half, worker.passed)) {
-          worker.bad.push_back(half);
+          later.push_back(half);
+        } else {
+          look_at(half, result[i]);
         }
       }
     }
+    deferred[i] = std::move(later);
   });
-  std::int64_t passed = 0;
-  for (Worker& worker : workers) {
+  parallel_for(blocks, threads, 1, [&](Index i, int) {
     stage.check();
-    const std::size_t deferred_count = worker.deferred.size();
-    for (std::size_t i = 0; i < deferred_count; ++i) {
-      ask_for_centers(worker.deferred[std::min(i + k_ahead, deferred_count - 1)]);
-      const Index half = worker.deferred[i];
-      if (!is_side(half, worker.passed)) bad.push_back(half);
+    for (std::size_t k = 0; k < deferred[i].size(); ++k) {
+      ask_for_centers(deferred[i][std::min(k + k_ahead, deferred[i].size() - 1)]);
+      look_at(deferred[i][k], result[i]);
     }
-    bad.insert(bad.end(), worker.bad.begin(), worker.bad.end());
-    passed += worker.passed;
-  }
-  return passed;
+  });
+  return result;
 }
 
 bool WeightedMesh::are_neighbors(Index a, Index b) const {
@@ -246,75 +254,136 @@ std::int64_t WeightedMesh::passed_by_all(int threads, const JobStage& stage) con
 }
 
 /// Exchanges two triangles if there is a piece of curve between the new ones.
-bool WeightedMesh::exchange(Index half, Exchanges& all) {
+bool WeightedMesh::exchange(Index half, Exchanges& some) {
   const Index twin = mesh_.twins[half], from = mesh_.corners[half], to = mesh_.corners[twin];
   const Index left = mesh_.corners[previous_half(half)], right = mesh_.corners[previous_half(twin)];
   if (left == right) return false;
   const Center near_from = center(from, right, left), near_to = center(to, left, right);
   if (!is_piece(right, left, near_to, near_from)) return false;
-  if (are_neighbors(left, right)) all.repeated.insert(all.repeated.end(), {left, right});
-  if (!all.recounts) all.turns -= passed_about(half);
+  if (are_neighbors(left, right)) some.repeated.insert(some.repeated.end(), {left, right});
+  if (!recounts_) some.turns -= passed_about(half);
   PlanarMesh view{nullptr, nullptr, far_away(), mesh_.corners.data(), mesh_.twins.data(), 0};
   exchange_pair(view, half);
   centers_[half / 4] = near_from;
   centers_[twin / 4] = near_to;
   if (from != far_away()) mesh_.leaving[from] = half;
   if (to != far_away()) mesh_.leaving[to] = twin;
-  if (!all.recounts) all.turns += passed_about(next_half(half));
+  if (!recounts_) some.turns += passed_about(next_half(half));
   return true;
 }
 
-/// Leaves in `all.bad` what cannot be exchanged.
-void WeightedMesh::exchange_all(Exchanges& all, const JobStage& stage) {
-  std::vector<Index> wanted;
-  wanted.swap(all.bad);
+/// Exchanges triangles all of whose corners are among some sites, and reads no others that are. So threads with
+/// different sites do not meet: each triangle is one's alone, or nobody changes its corners, and the edges between two
+/// sites are theirs alone.
+void WeightedMesh::exchange_within(Exchanges& some, const JobStage& stage) {
+  const auto is_here = [&](Index site) { return some.begin <= site && site < some.end; };
+  std::vector<Index>& wanted = some.wanted;
   std::size_t done = 0;
-  const std::size_t most = 64 * points_.size();  // never seen, but not shown that there must be an end
+  const std::size_t most = 64 * static_cast<std::size_t>(some.end - some.begin);  // never seen, but not shown to do
   while (!wanted.empty() && done < most) {
     if (++done % k_block == 0) stage.check();
     const Index half = wanted.back(), twin = mesh_.twins[half];
     wanted.pop_back();
     if (is_side(half)) continue;
-    if (exchange(half, all)) {
+    if (!is_here(mesh_.corners[previous_half(half)]) || !is_here(mesh_.corners[previous_half(twin)])) {
+      some.beyond.push_back(half);
+    } else if (exchange(half, some)) {
       wanted.insert(wanted.end(), {half, previous_half(half), twin, previous_half(twin)});
     } else {
-      all.bad.push_back(half);
+      some.bad.push_back(half);
     }
   }
-  all.bad.insert(all.bad.end(), wanted.begin(), wanted.end());
+  some.bad.insert(some.bad.end(), wanted.begin(), wanted.end());
+}
+
+/// Exchanges what can be, between few sites first, side by side, then between more. Which cells the mesh has then does
+/// not depend on the order.
+WeightedMesh::Exchanges WeightedMesh::exchange_all(std::vector<Exchanges>&& blocks, int threads,
+                                                   const JobStage& stage) {
+  constexpr Index k_more = 8;
+  const Index count = far_away() + 1;
+  const auto take = [](std::vector<Index>& to, std::vector<Index>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+    from.clear();
+  };
+  Exchanges all{0, count};
+  for (Exchanges& block : blocks) take(all.beyond, block.beyond);
+  for (Index size = k_sites; !all.beyond.empty() || size == k_sites; size *= k_more) {
+    if (size > k_sites) blocks = blocks_of(size, count);
+    for (const Index half : all.beyond) {
+      const Index from = mesh_.corners[half] / size, to = mesh_.corners[next_half(half)] / size;
+      (from == to ? blocks[from].wanted : blocks[from].beyond).push_back(half);
+    }
+    all.beyond.clear();
+    parallel_for(static_cast<Index>(blocks.size()), threads, 1, [&](Index i, int) {
+      stage.check();
+      exchange_within(blocks[i], stage);
+    });
+    for (Exchanges& block : blocks) {
+      take(all.beyond, block.beyond);
+      take(all.bad, block.bad);
+      take(all.repeated, block.repeated);
+      all.turns += block.turns;
+    }
+  }
+  return all;
 }
 
 // Around a site with sides only, the ways turn once or more often: if together they turn as often as there are such
 // sites, then around each of them they turn once.
 void WeightedMesh::improve(int threads, const JobStage& stage) {
-  Exchanges all;
-  all.turns = find_sides(all.bad, threads, stage.part(0, 0.8));
+  std::vector<Exchanges> blocks = find_sides(threads, stage.part(0, 0.8));
+  std::size_t bad = 0;
+  for (const Exchanges& block : blocks) bad += block.wanted.size() + block.beyond.size();
   constexpr std::size_t k_many = 16;  // one in so many sites: then all turns are counted sooner than those that change
-  all.recounts = all.bad.size() > points_.size() / k_many;
-  exchange_all(all, stage);
-  if (all.recounts) all.turns = passed_by_all(threads, stage.part(0.8, 1));
-  std::fill(is_certain_.begin(), is_certain_.end(), std::uint8_t{1});
-  std::int64_t certain = far_away();
-  const auto doubt = [&](Index site) {
-    if (site == far_away() || is_certain_[site] == 0) return;
-    is_certain_[site] = 0;
-    --certain;
-    all.turns -= ring(site).turns;
-  };
-  for (const Index half : all.bad) {
-    if (is_side(half)) continue;
-    doubt(mesh_.corners[half]);
-    doubt(mesh_.corners[next_half(half)]);
-  }
-  for (const Index site : all.repeated) {
-    if (site == far_away()) continue;
-    const Ring found = ring(site);
-    if (found.turns != 1 || found.begins != 1) doubt(site);
-  }
-  if (all.turns != certain)
-    for (Index site = 0; site < far_away(); ++site)
-      if (is_certain_[site] != 0 && ring(site).turns != 1) is_certain_[site] = 0;
+  recounts_ = bad > points_.size() / k_many;
+  Exchanges all = exchange_all(std::move(blocks), threads, stage);
+  if (recounts_) all.turns = passed_by_all(threads, stage.part(0.8, 1));
+  find_certain(all, threads, stage);
   stage.update(1);
+}
+
+void WeightedMesh::find_certain(const Exchanges& all, int threads, const JobStage& stage) {
+  const auto is_certain = [&](Index site) { return std::atomic_ref(is_certain_[site]); };
+  const auto doubt = [&](Index site) {
+    if (site != far_away()) is_certain(site).store(0, std::memory_order_relaxed);
+  };
+  const auto for_blocks = [&](std::size_t count, auto&& work) {
+    parallel_for(static_cast<Index>((count + k_sites - 1) / k_sites), threads, 1, [&](Index block, int) {
+      stage.check();
+      const std::size_t begin = static_cast<std::size_t>(block) * k_sites;
+      work(begin, std::min(count, begin + k_sites));
+    });
+  };
+  for_blocks(points_.size(), [&](std::size_t begin, std::size_t end) {
+    std::fill(is_certain_.begin() + begin, is_certain_.begin() + end, std::uint8_t{1});
+  });
+  for_blocks(all.bad.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Index half : std::span(all.bad).subspan(begin, end - begin)) {
+      if (is_side(half)) continue;
+      doubt(mesh_.corners[half]);
+      doubt(mesh_.corners[next_half(half)]);
+    }
+  });
+  for_blocks(all.repeated.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Index site : std::span(all.repeated).subspan(begin, end - begin)) {
+      if (site == far_away() || is_certain(site).load(std::memory_order_relaxed) == 0) continue;
+      const Ring found = ring(site);
+      if (found.turns != 1 || found.begins != 1) doubt(site);
+    }
+  });
+  std::atomic<std::int64_t> left{all.turns - far_away()};  // turns too many of certain sites
+  for_blocks(points_.size(), [&](std::size_t begin, std::size_t end) {
+    std::int64_t doubted = 0;
+    for (std::size_t site = begin; site < end; ++site)
+      if (is_certain_[site] == 0) doubted += ring(static_cast<Index>(site)).turns - 1;
+    left -= doubted;
+  });
+  if (left == 0) return;
+  for_blocks(points_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t site = begin; site < end; ++site)
+      if (is_certain_[site] != 0 && ring(static_cast<Index>(site)).turns != 1) is_certain_[site] = 0;
+  });
 }
 
 }  // namespace saddleback::voronoi2d

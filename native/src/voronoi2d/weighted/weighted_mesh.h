@@ -7,6 +7,7 @@
 // site the corners follow each other along these curves, once around, then the cells fit together along their sides and
 // about their corners and cover the plane once: so they are the true cells. No circle has to be tested for being empty.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -17,6 +18,7 @@
 #include "saddleback/types.h"
 
 #include "predicates/weighted_2d.h"
+#include "support/threads/parallel.h"
 #include "voronoi2d/sweep/planar_mesh.h"
 #include "voronoi2d/sweep/triangulation.h"
 
@@ -48,6 +50,11 @@ class WeightedMesh {
   }
   /// Returns where a triangle's corner lies, which is not far.
   Vec2 corner(Index triangle) const;
+  /// Returns the lowest of the sites about a triangle's corner.
+  Index lowest_about(Index triangle) const {
+    const Index* const corner = mesh_.corners.data() + 4 * static_cast<std::size_t>(triangle);
+    return std::min({corner[0], corner[1], corner[2]});
+  }
   Index twin(Index half) const { return mesh_.twins[half]; }
   /// The half-edge that `visit_ring` comes to last.
   Index last_in_ring(Index site) const { return next_half(mesh_.twins[mesh_.leaving[site]]); }
@@ -72,18 +79,24 @@ class WeightedMesh {
     Index turns;   ///< how often the ways to them pass the x axis
     Index begins;  ///< sides towards the lowest neighbor: with several, where a cell begins is open
   };
-  struct Exchanges {
-    std::vector<Index> bad{};       ///< half-edges that are no sides
+  /// What is done between sites in a row, [begin, end), besides all others.
+  struct alignas(k_apart) Exchanges {
+    Index begin, end;
+    std::vector<Index> wanted{};    ///< half-edges to look at, between two of the sites
+    std::vector<Index> beyond{};    ///< others that are no sides: next to more sites than these
+    std::vector<Index> bad{};       ///< that are no sides and cannot be exchanged
     std::vector<Index> repeated{};  ///< sites with several sides towards another
-    std::int64_t turns = 0;         ///< how often the ways of all sites to their corners pass the x axis
-    bool recounts = false;          ///< `turns` is counted once more at the end, not with each exchange
+    std::int64_t turns = 0;         ///< how often the ways of all sites to their corners pass the x axis: what is new
   };
 
   Index next_around(Index half) const { return mesh_.twins[previous_half(half)]; }
   void add_far_triangles();
   Index free_triangle(Index from) const;
   void find_centers(Index begin, Index end);
-  std::int64_t find_sides(std::vector<Index>& bad, int threads, const JobStage& stage);
+  std::vector<Exchanges> find_sides(int threads, const JobStage& stage);
+  static std::vector<Exchanges> blocks_of(Index size, Index count);
+  Exchanges exchange_all(std::vector<Exchanges>&& blocks, int threads, const JobStage& stage);
+  void find_certain(const Exchanges& all, int threads, const JobStage& stage);
   static std::array<Index, 3> from_lowest(Index a, Index b, Index c);
   Center center(Index a, Index b, Index c) const;
   Way way(Index site, const Center& center) const;
@@ -98,13 +111,14 @@ class WeightedMesh {
   bool are_neighbors(Index a, Index b) const;
   std::int64_t passed_about(Index half) const;
   std::int64_t passed_by_all(int threads, const JobStage& stage) const;
-  bool exchange(Index half, Exchanges& all);
-  void exchange_all(Exchanges& all, const JobStage& stage);
+  bool exchange(Index half, Exchanges& some);
+  void exchange_within(Exchanges& some, const JobStage& stage);
 
   Triangulation mesh_;
   std::span<const predicates::WeightedPoint2> points_;
   LargeArray<Center> centers_;
   LargeArray<std::uint8_t> is_certain_;
+  bool recounts_ = false;  ///< how often ways pass the x axis, at the end, and not with each exchange
 };
 
 }  // namespace saddleback::voronoi2d

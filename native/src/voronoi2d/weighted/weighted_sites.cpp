@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "saddleback/error.h"
 
 #include "support/threads/parallel.h"
+#include "voronoi2d/sites/for_pieces.h"
 #include "voronoi2d/sites/site_order.h"
 #include "voronoi2d/sites/site_weights.h"
 
@@ -20,14 +22,14 @@ void check_scaled(std::span<const double> weights, double scale) {
   constexpr double k_largest = 0x1p500;  // squares stay among the doubles
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const double scaled = weights[i] * scale;
-    if (!(std::fabs(scaled) <= k_largest) || scaled / scale != weights[i])
+    if (!(std::fabs(scaled) <= k_largest) || (scale != 1 && scaled / scale != weights[i]))
       throw InputError(message("weights: weight ", i, " is ", weights[i],
                                ", too different in size from the sites' coordinates to be told exactly"));
   }
 }
 
 /// Finds hidden sites, a block of sites in a row after the other. At one place there is one site.
-class HiddenFinder {
+class alignas(k_apart) HiddenFinder {
  public:
   HiddenFinder(std::span<const WeightedPoint2> points, const DiskTree& tree) : points_(points), tree_(tree) {}
 
@@ -93,6 +95,16 @@ class HiddenFinder {
   std::vector<DiskTree::Disk> disks_;
 };
 
+/// Counts what is left of each piece of sites: where it begins in a row, and the row's end.
+std::vector<std::size_t> starts_of_left(const LargeArray<std::uint8_t>& hidden, int threads) {
+  std::vector<std::size_t> starts(hidden.size() / k_piece + 2, 0);
+  for_pieces(hidden.size(), threads, {}, [&](Index piece, std::size_t begin, std::size_t end) {
+    starts[piece + 1] = static_cast<std::size_t>(std::count(hidden.begin() + begin, hidden.begin() + end, 0));
+  });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  return starts;
+}
+
 }  // namespace
 
 WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const double> weights, int threads,
@@ -107,10 +119,12 @@ WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const 
 
   const Index count = ordered.count();
   LargeArray<WeightedPoint2> points(count);
-  for (Index rank = 0; rank < count; ++rank)
-    points[rank] = {ordered.x[rank], ordered.y[rank], weights[heaviest.original[rank]] * result.scale};
-  const DiskTree tree(points);
-  std::vector<std::uint8_t> hidden(count, 0);
+  for_pieces(count, threads, {}, [&](Index, std::size_t begin, std::size_t end) {
+    for (std::size_t rank = begin; rank < end; ++rank)
+      points[rank] = {ordered.x[rank], ordered.y[rank], weights[heaviest.original[rank]] * result.scale};
+  });
+  const DiskTree tree(points, threads);
+  LargeArray<std::uint8_t> hidden(count);
   constexpr Index k_block = 64, k_blocks = 16;
   std::vector<HiddenFinder> finders(thread_count(threads), HiddenFinder(points, tree));
   parallel_for((count + k_block - 1) / k_block, threads, k_blocks, [&](Index block, int thread) {
@@ -118,25 +132,35 @@ WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const 
     finders[thread].find(block * k_block, std::min(count, (block + 1) * k_block), hidden.data());
   });
   stage.update(0.9);
-  result.points.reserve(count);
-  result.places.reserve(count);
-  result.original.reserve(count);
-  for (Index rank = 0; rank < count; ++rank) {
-    if (hidden[rank]) {
-      heaviest.is_hidden[heaviest.original[rank]] = true;
-    } else {
-      result.points.push_back(points[rank]);
-      result.places.push_back(ordered.places[rank]);
-      result.original.push_back(heaviest.original[rank]);
+  const std::vector<std::size_t> starts = starts_of_left(hidden, threads);
+  result.points.resize(starts.back());
+  result.places.resize(starts.back());
+  result.original.resize(starts.back());
+  for_pieces(count, threads, {}, [&](Index piece, std::size_t begin, std::size_t end) {
+    std::size_t to = starts[piece];
+    for (std::size_t rank = begin; rank < end; ++rank) {
+      if (hidden[rank]) {
+        heaviest.is_hidden[heaviest.original[rank]] = 1;
+      } else {
+        result.points[to] = points[rank];
+        result.places[to] = ordered.places[rank];
+        result.original[to++] = heaviest.original[rank];
+      }
     }
-  }
-  for (std::size_t i = 0; i < sites.size(); ++i)
-    if (heaviest.is_hidden[i] || heaviest.is_hidden[result.site_of[i]]) result.hidden.push_back(static_cast<Index>(i));
+  });
+  std::vector<std::vector<Index>> hidden_of(sites.size() / k_piece + 1);
+  for_pieces(sites.size(), threads, {}, [&](Index piece, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if ((heaviest.is_hidden[i] | heaviest.is_hidden[result.site_of[i]]) != 0)
+        hidden_of[piece].push_back(static_cast<Index>(i));
+  });
+  for (const std::vector<Index>& some : hidden_of) result.hidden.insert(result.hidden.end(), some.begin(), some.end());
   stage.update(1);
   return result;
 }
 
-DiskTree::DiskTree(std::span<const WeightedPoint2> points) : site_count_(static_cast<Index>(points.size())) {
+DiskTree::DiskTree(std::span<const WeightedPoint2> points, int threads)
+    : site_count_(static_cast<Index>(points.size())) {
   constexpr double k_slack = 0x1p-49;  // of the radius, for its rounding
   const auto disk_about = [&](Index begin, Index end, auto&& disk_at) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -155,17 +179,16 @@ DiskTree::DiskTree(std::span<const WeightedPoint2> points) : site_count_(static_
   };
   Index count = site_count_;
   while (count > 0 && (levels_.empty() || count > k_fan)) {
-    std::vector<Disk> level;
-    for (Index begin = 0; begin < count; begin += k_fan) {
-      const Index end = std::min(count, begin + k_fan);
-      if (levels_.empty()) {
-        level.push_back(disk_about(begin, end, [&](Index i) {
-          return Disk{points[i].x, points[i].y, points[i].weight};
-        }));
-      } else {
-        level.push_back(disk_about(begin, end, [&](Index i) { return levels_.back()[i]; }));
-      }
-    }
+    std::vector<Disk> level((count + k_fan - 1) / k_fan, Disk{0, 0, 0});
+    constexpr Index k_together = 1024;
+    parallel_for(static_cast<Index>(level.size()), threads, k_together, [&](Index i, int) {
+      const Index begin = i * k_fan, end = std::min(count, begin + k_fan);
+      level[i] = levels_.empty() ? disk_about(begin, end,
+                                              [&](Index site) {
+                                                return Disk{points[site].x, points[site].y, points[site].weight};
+                                              })
+                                 : disk_about(begin, end, [&](Index disk) { return levels_.back()[disk]; });
+    });
     levels_.push_back(std::move(level));
     count = static_cast<Index>(levels_.back().size());
   }

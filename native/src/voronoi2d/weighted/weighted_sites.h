@@ -56,7 +56,7 @@ class DiskTree {
   };
 
   DiskTree() = default;
-  explicit DiskTree(std::span<const predicates::WeightedPoint2> points);
+  DiskTree(std::span<const predicates::WeightedPoint2> points, int threads);
 
   /// Calls found(row) for rows of sites, [k_fan row, k_fan (row + 1)), as long as enters(disk) says so for all disks
   /// about them. O(disks entered).
