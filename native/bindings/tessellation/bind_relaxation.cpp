@@ -153,7 +153,8 @@ fixed : (m,) int array, optional
     Sites that stay where they are.
 curves : sequence of SurfaceCurve, optional
     Features or boundaries that sites slide along instead of leaving them. With `count`, sites are put on them as far
-    apart as neighbors in even cells; the ends of open curves stay where they are. Others whose cells reach across a
+    apart as neighbors in even cells; the ends of open curves stay where they are (of those
+    less than half a cell apart along curves, one). Others whose cells reach across a
     curve are put onto it.
 held : (n,) int array, optional
     With `sites`: the curve that each is held on, -1 for free ones. Held sites begin at the nearest points of their curves.

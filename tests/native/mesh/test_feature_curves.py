@@ -135,6 +135,23 @@ def test_a_remesh_of_a_box_keeps_its_edges() -> None:
     assert volume(plain.vertices, plain.triangles) < 0.99 * volume(mesh.vertices, mesh.triangles)
 
 
+def test_corners_within_a_cell_are_one() -> None:
+    """A line along a grid's edges that turns at each vertex, in cells of several edges: each turn ends a curve."""
+    mesh = sb.Mesh(*meshes.grid(31, 31))
+    step = mesh.edge_lengths.min()
+    line = [np.array([8 + (i + 1) // 2, 8 + i // 2]) * step for i in range(29)]
+    ends = [int(np.linalg.norm(mesh.vertices[:, :2] - place, axis=1).argmin()) for place in line]
+    curves = sb.feature_curves(mesh, math.pi, boundary=False, edges=list(pairwise(ends)))
+    assert len(curves) == 28
+    cells = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=30), count=40, curves=curves, max_iterations=10).cells
+    assert cells.dual().issues == []
+    places = cells.sites.positions(mesh)
+    held = places[np.linalg.norm(places[:, None] - mesh.vertices[ends], axis=2).min(axis=1) < 1e-9]
+    gaps = np.linalg.norm(held[:, None] - held, axis=2)[~np.eye(len(held), dtype=bool)]
+    assert 2 <= len(held) < 28
+    assert gaps.min() > 0.3 * math.sqrt(mesh.area / 40)
+
+
 def volume(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> float:
     """What a closed mesh encloses."""
     a, b, c = vertices[triangles].transpose(1, 0, 2)

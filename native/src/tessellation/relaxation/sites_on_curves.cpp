@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <queue>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/sample.h"
@@ -186,31 +189,108 @@ double mass_of(const Mesh& mesh, std::span<const double> density) {
   return sum;
 }
 
+/// Where open curves end, those that several share once. Of ends that are less than half a cell apart along curves one
+/// is kept, rather one at which long curves meet: two sites there would have cells that no dual mesh can be made of.
+class CurveEnds {
+ public:
+  /// `sums`: of each curve as `wanted_spacings` has them.
+  CurveEnds(const Mesh& mesh, std::span<const SurfaceCurve* const> curves,
+            const std::vector<std::vector<double>>& sums) {
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      for (const bool is_last : {false, true})
+        ends_.push_back(curves[i]->closed() ? k_none : number(mesh, *curves[i], is_last));
+    }
+    near_.resize(places_.size());
+    std::vector<Index> long_curves(places_.size(), 0);
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      if (curves[i]->closed()) continue;
+      const Index a = ends_[2 * i], b = ends_[2 * i + 1];
+      if (const double size = sums[i].back(); size < k_near)
+        near_[a].emplace_back(b, size), near_[b].emplace_back(a, size);
+      else
+        ++long_curves[a], ++long_curves[b];
+    }
+    std::vector<Index> order(places_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](Index end) { return long_curves[end]; });
+    is_kept_.assign(places_.size(), 0);
+    distance_.assign(places_.size(), k_far);
+    for (const Index end : order) is_kept_[end] = has_kept_near(end) ? 0 : 1;
+  }
+
+  Index count() const { return static_cast<Index>(places_.size()); }
+  /// The number of an end of an open curve.
+  Index of(Index curve, bool is_last) const { return ends_[2 * curve + (is_last ? 1 : 0)]; }
+  bool is_kept(Index end) const { return is_kept_[end] != 0; }
+
+ private:
+  static constexpr double k_near = 0.5;  ///< of the distance of neighbors in even cells
+  static constexpr double k_far = std::numeric_limits<double>::infinity();
+
+  Index number(const Mesh& mesh, const SurfaceCurve& curve, bool is_last) {
+    constexpr double k_same = 1e-9;  // relative to the curve
+    const double along = is_last ? curve.length() : 0;
+    const Vec3 place = position(mesh, point_on(segment_at(curve, along), along));
+    const auto same = std::ranges::find_if(
+        places_, [&](const Vec3& other) { return (other - place).norm() <= k_same * curve.length(); });
+    const auto found = static_cast<Index>(same - places_.begin());
+    if (same == places_.end()) places_.push_back(place);
+    return found;
+  }
+
+  /// By Dijkstra's search along short curves.
+  bool has_kept_near(Index end) {
+    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
+    std::vector<Index> reached{end};
+    bool found = false;
+    for (queue.emplace(distance_[end] = 0, end); !queue.empty() && !found; queue.pop()) {
+      const auto [distance, at] = queue.top();
+      if (found = is_kept_[at] != 0; found || distance > distance_[at]) continue;
+      for (const auto& [next, size] : near_[at]) {
+        if (!(distance + size < std::min(k_near, distance_[next]))) continue;
+        distance_[next] = distance + size;
+        reached.push_back(next);
+        queue.emplace(distance_[next], next);
+      }
+    }
+    for (const Index other : reached) distance_[other] = k_far;
+    return found;
+  }
+
+  std::vector<Index> ends_;  ///< by curve, first and last; k_none of closed ones
+  std::vector<Vec3> places_;
+  std::vector<std::vector<std::pair<Index, double>>> near_;  ///< ends along short curves, and how far
+  std::vector<double> distance_;                             ///< of a search
+  std::vector<std::uint8_t> is_kept_;
+};
+
 }  // namespace
 
 HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve* const> curves,
                      std::span<const double> density, std::uint64_t seed) {
-  constexpr double k_same = 1e-9;  // relative to the curve: ends that several curves share
   HeldStart start;
   const double mass = mass_of(mesh, density);
-  const auto add = [&](Index curve, double along, bool is_end) {
-    const SurfacePoint point = point_on(segment_at(*curves[curve], along), along);
-    const Vec3 place = position(mesh, point);
-    const auto is_there = [&](Index site) {
-      return (position(mesh, start.sites[site]) - place).norm() <= k_same * curves[curve]->length();
-    };
-    if (is_end && std::ranges::any_of(start.fixed, is_there)) return;
-    if (is_end) start.fixed.push_back(static_cast<Index>(start.sites.size()));
-    start.sites.push_back(point);
+  std::vector<std::vector<double>> sums;
+  for (const SurfaceCurve* curve : curves) sums.push_back(wanted_spacings(*curve, density, mass, count));
+  const auto add = [&](Index curve, double along) {
+    start.sites.push_back(point_on(segment_at(*curves[curve], along), along));
     start.held.push_back(curve);
   };
+  const CurveEnds ends(mesh, curves, sums);
+  std::vector<std::uint8_t> is_added(ends.count(), 0);
   for (Index i = 0; i < static_cast<Index>(curves.size()); ++i) {
     const SurfaceCurve& curve = *curves[i];
-    const std::vector<double> sums = wanted_spacings(curve, density, mass, count);
-    const Index least = curve.closed() ? 3 : 1, gaps = std::max(least, static_cast<Index>(std::lround(sums.back())));
-    if (!curve.closed()) add(i, 0, true), add(i, curve.length(), true);
-    for (Index gap = curve.closed() ? 0 : 1; gap < gaps; ++gap)
-      add(i, along_at(curve, sums, sums.back() * gap / gaps), false);
+    const double size = sums[i].back();
+    const Index least = curve.closed() ? 3 : 1, gaps = std::max(least, static_cast<Index>(std::lround(size)));
+    for (const bool is_last : {false, true}) {
+      if (curve.closed()) break;
+      const Index end = ends.of(i, is_last);
+      if (!ends.is_kept(end) || is_added[end]) continue;
+      is_added[end] = 1;
+      start.fixed.push_back(static_cast<Index>(start.sites.size()));
+      add(i, is_last ? curve.length() : 0);
+    }
+    for (Index gap = curve.closed() ? 0 : 1; gap < gaps; ++gap) add(i, along_at(curve, sums[i], size * gap / gaps));
   }
   const auto on_curves = static_cast<Index>(start.sites.size());
   if (on_curves > count) {

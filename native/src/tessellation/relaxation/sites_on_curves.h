@@ -50,7 +50,7 @@ struct HeldStart {
 };
 
 /// Sites on the curves as far apart as neighbors in even cells of the density, the ends of open curves among them
-/// (fixed; shared ends once), then a sample of the rest. \throw InputError when the curves alone need more than
+/// (fixed; of ends less than half of that apart along curves one), then a sample of the rest. \throw InputError when the curves alone need more than
 /// `count`; as initial_sites.
 HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve* const> curves,
                      std::span<const double> density, std::uint64_t seed);
