@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests.truth.registry import guards
+from tests.truth.surfaces import are_fat, elsewhere
 
 Floats = NDArray[np.float64]
 Random = np.random.Generator
@@ -62,6 +63,32 @@ def check_areas_by_brute_force(mesh: sb.Mesh, rng: Random) -> None:
     rounding = 1e-9 * np.sqrt(mesh.area) + 1e-10 * np.linalg.norm(np.ptp(mesh.vertices, axis=0))
     np.testing.assert_allclose(distance, table.min(axis=0), rtol=1e-9, atol=rounding)
     np.testing.assert_allclose(table[located, np.arange(len(faces))], table.min(axis=0), rtol=1e-9, atol=rounding)
+
+
+def lag_at_borders(mesh: sb.Mesh, cells: sb.GeodesicVoronoi) -> float:
+    """By how much more than from the nearest site points of borders are from those whose cells meet there, at most."""
+    fields = [sb.ExactField(mesh, cells.sites[i]) for i in range(len(cells.sites))]
+    table = np.array([field.distance_to(cells.edge_surface) for field in fields])
+    owners = np.repeat(cells.edge_cells, np.diff(cells.edge_offsets), axis=0).T
+    lags = table[owners, np.arange(owners.shape[1])] - table.min(axis=0)
+    return float(lags.max(initial=0))
+
+
+@guards("geodesic_voronoi")
+def check_cells_without_places(mesh: sb.Mesh, rng: Random) -> None:
+    """Exact cells of a surface elsewhere against those of the surface itself, and their borders against its fields."""
+    if not are_fat(mesh):
+        return
+    sites, moved = random_sites(mesh, rng), elsewhere(mesh, rng)
+    here, there = exact_cells(mesh, sites), exact_cells(moved, sites)
+    size = np.sqrt(mesh.area / len(sites))
+    np.testing.assert_allclose(there.vertex_distance, here.vertex_distance, rtol=1e-9, atol=1e-9 * size)
+    allowed = max(1.001 * lag_at_borders(mesh, here), 1e-5 * size)
+    assert lag_at_borders(mesh, there) <= allowed, f"another site is nearer by {lag_at_borders(mesh, there)}"
+    places = sites.positions(mesh)
+    gaps = np.linalg.norm(places[:, None] - places, axis=2) + np.eye(len(places)) * mesh.mean_edge_length
+    if gaps[gaps > 0].min() >= 1e-2 * size:  # of sites beside each other the tolerance says where one's cell ends
+        np.testing.assert_allclose(there.areas, here.areas, rtol=0, atol=1e-5 * mesh.area)
 
 
 def edges_of(triangles: NDArray[np.int32]) -> Counter[tuple[int, int]]:
@@ -124,7 +151,10 @@ def polygon_area(polygon: Floats) -> float:
 
 @guards("geodesic_voronoi", on="nothing")
 def check_plane_cells(rng: Random) -> None:
-    """Cells on a flat square of any triangles are those of the plane, each clipped from the square by lines."""
+    """Cells on a flat square of any triangles are those of the plane, each clipped from the square by lines.
+
+    Whether the square lies in the plane or is told by lengths alone.
+    """
     size = int(rng.integers(2, 7))
     x, y = (part.ravel() for part in np.meshgrid(np.linspace(0, 1, size), np.linspace(0, 1, size)))
     inner = (np.minimum(x, y) > 0) & (np.maximum(x, y) < 1)
@@ -138,7 +168,7 @@ def check_plane_cells(rng: Random) -> None:
     gap = (np.linalg.norm(places[:, None] - places, axis=2) + np.eye(len(places))).min()
     if gap < 1e-9:
         return  # One cell or two, as rounding says: see check_areas_by_brute_force.
-    cells = exact_cells(mesh, sites)
+    cells = exact_cells(mesh if rng.random() < 0.5 else elsewhere(mesh, rng), sites)
     for i, place in enumerate(places):
         polygon = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
         for other in np.delete(places, i, axis=0):

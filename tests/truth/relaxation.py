@@ -14,6 +14,7 @@ import saddleback as sb
 from tests.truth.distances import Floats, Random, area_between, is_convex_and_flat, longest_edge
 from tests.truth.plane import Point, cells_within, exact, random_domain, rounded, some_of
 from tests.truth.registry import guards
+from tests.truth.surfaces import are_fat, elsewhere
 
 
 def moments(loop: list[Point], site: Floats) -> tuple[float, Floats, float]:
@@ -158,7 +159,9 @@ def least_sums_of_squares(mesh: sb.Mesh, rng: Random) -> None:
 
 
 def exact_plane_cells(mesh: sb.Mesh, rng: Random) -> tuple[sb.GeodesicVoronoi, Floats, list[list[Point]]] | None:
-    """Exact cells of a flat convex piece of the plane, the places of their sites, and their polygons in fractions."""
+    """Exact cells of a flat convex piece of the plane, of places or lengths, their sites' places, and their polygons in
+    fractions.
+    """
     if not is_convex_and_flat(mesh):
         return None
     count, size = int(rng.integers(1, 6)), longest_edge(mesh)
@@ -167,7 +170,8 @@ def exact_plane_cells(mesh: sb.Mesh, rng: Random) -> tuple[sb.GeodesicVoronoi, F
     gaps = np.linalg.norm(places[:, None] - places, axis=2) + size * np.eye(count)
     if gaps.min() < 1e-3 * size:
         return None
-    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3, threads=1), sites, exact=True, threads=1)
+    surface = elsewhere(mesh, rng) if are_fat(mesh) and rng.random() < 0.5 else mesh
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(surface, k=3, threads=1), sites, exact=True, threads=1)
     rim = mesh.vertices[mesh.boundary_loops[0], :2]
     return cells, places, [polygon for (polygon,) in cells_within(places, [rim])]
 

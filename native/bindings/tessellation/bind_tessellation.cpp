@@ -346,6 +346,7 @@ exact : bool
     By exact distances instead of the graph's, as a reference: bisectors are hyperbolas where they should be, and no
     point lies in a cell whose site is farther than another by more than 1e-5 of a cell's size (the root of its area).
     Sites within 1e-10 of the extent of their part of the mesh of each other are one: the first of them has the cell.
+    Where lengths were given, the extent is the root of its area, or its longest edge.
     Many times slower, and on one core.
 threads : int
     0: all cores. The result does not depend on it.

@@ -20,39 +20,55 @@ constexpr double k_tolerance = 5e-6;
 // 1e-4 of its distance at most. Of sites that are nearer to each other rounding alone would say which is nearest.
 constexpr double k_same_place = 1e-10;
 
-/// Returns for each component the distance within which places count as one: a share of its extent in space.
+std::vector<double> areas_of_parts(const Mesh& mesh) {
+  std::vector<double> areas(mesh.component_count(), 0);
+  for (Index face = 0; face < mesh.face_count(); ++face)
+    areas[mesh.component_of(mesh.triangles()[face][0])] += mesh.face_area(face);
+  return areas;
+}
+
+/// Returns for each component the distance within which places count as one: a share of its extent in space, or else
+/// of the root of its area or its longest edge.
 std::vector<double> limits_of_places(const Mesh& mesh) {
-  std::vector<Eigen::AlignedBox3d> boxes(mesh.component_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) boxes[mesh.component_of(v)].extend(mesh.position(v));
   std::vector<double> limits;
-  for (const Eigen::AlignedBox3d& box : boxes) limits.push_back(k_same_place * box.diagonal().norm());
+  if (mesh.is_intrinsic()) {
+    for (const double area : areas_of_parts(mesh)) limits.push_back(std::sqrt(area));
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      double& limit = limits[mesh.component_of(mesh.from(h))];
+      limit = std::max(limit, mesh.length(h));
+    }
+  } else {
+    std::vector<Eigen::AlignedBox3d> boxes(mesh.component_count());
+    for (Index v = 0; v < mesh.vertex_count(); ++v) boxes[mesh.component_of(v)].extend(mesh.position(v));
+    for (const Eigen::AlignedBox3d& box : boxes) limits.push_back(box.diagonal().norm());
+  }
+  for (double& limit : limits) limit *= k_same_place;
   return limits;
 }
 
 /// Returns for each component the tolerance of distances in it.
 std::vector<double> tolerances(const Mesh& mesh, const SurfacePoints& sites) {
-  std::vector<double> areas(mesh.component_count(), 0), counts(areas), result;
-  for (Index face = 0; face < mesh.face_count(); ++face)
-    areas[mesh.component_of(mesh.triangles()[face][0])] += mesh.face_area(face);
+  std::vector<double> counts(mesh.component_count(), 0), result;
   for (const SurfacePoint& site : sites) ++counts[mesh.component_of(mesh.triangles()[site.face][0])];
+  const std::vector<double> areas = areas_of_parts(mesh);
   for (std::size_t part = 0; part < areas.size(); ++part)
     result.push_back(k_tolerance * std::sqrt(areas[part] / counts[part]));
   return result;
 }
 
-/// The sites but those that are at the place of an earlier one. O(n log n) but for many beside each other.
+/// The sites but those that are at the place of an earlier one. O(n log n) but for many beside each other, or shown so.
 std::vector<Index> sites_of_places(const Mesh& mesh, const SurfacePoints& sites) {
   const std::vector<double> limits = limits_of_places(mesh);
   const Vec3 direction = Vec3(0.48, 0.6, 0.64);  // any unit vector; grids are seldom square to this one
   std::multimap<double, Index> along;
   std::vector<Index> kept;
   for (Index site = 0; site < static_cast<Index>(sites.size()); ++site) {
-    const Vec3 place = position(mesh, sites[site]);
-    const double here = direction.dot(place);
+    const double here = direction.dot(position(mesh, sites[site]));
     const double limit = limits[mesh.component_of(mesh.triangles()[sites[site].face][0])];
-    const bool is_known = std::any_of(along.lower_bound(here - limit), along.upper_bound(here + limit), [&](auto& at) {
+    const double shown = mesh.in_space(limit);
+    const bool is_known = std::any_of(along.lower_bound(here - shown), along.upper_bound(here + shown), [&](auto& at) {
       const SurfacePoint& other = sites[at.second];
-      return (position(mesh, other) - place).norm() <= limit &&
+      return step_length(mesh, sites[site], other) <= limit &&
              shared_face(mesh, sites[site], other, k_barycentric_tolerance) != k_none;
     });
     if (is_known) continue;
@@ -166,7 +182,6 @@ class InFaces {
 }  // namespace
 
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job) {
-  mesh.require_space("exact");
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells by exact distances");
   std::vector<Index> kept = sites_of_places(mesh, sites);

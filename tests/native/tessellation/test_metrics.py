@@ -8,6 +8,8 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cell_checks import check
+from tests.native.exact import random_points
 
 MESH = sb.Mesh(*meshes.icosphere(2))
 FIELD = sb.direction_field(MESH, 2)
@@ -176,6 +178,58 @@ def test_sites_of_several_poses_suit_each_better_than_those_of_one():
 
     of_all, of_one = worst(together), worst(graphs[0])
     assert of_all[0] < of_one[0] and of_all[1] > of_one[1]
+
+
+def exact_cells(mesh: sb.Mesh, sites: sb.SurfacePoints) -> sb.GeodesicVoronoi:
+    return sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True)
+
+
+def shown_nowhere(mesh: sb.Mesh) -> sb.Mesh:
+    """The surface by its lengths alone: all vertices in one place."""
+    return sb.Mesh(0 * mesh.vertices, mesh.triangles, lengths=mesh.edge_lengths)
+
+
+@pytest.mark.parametrize("arrays", [meshes.tetrahedron(), meshes.cube(), meshes.icosphere(2), meshes.torus(24, 12)])
+def test_exact_cells_are_those_of_the_lengths_wherever_the_surface_is_shown(arrays):
+    mesh = sb.Mesh(*arrays)
+    sites = random_points(mesh, 9, seed=4)
+    own = sb.Mesh(mesh.vertices, mesh.triangles, lengths=mesh.edge_lengths)
+    wanted = exact_cells(mesh, sites)
+    for surface in (own, shown_nowhere(mesh)):
+        cells = exact_cells(surface, sites)
+        np.testing.assert_array_equal(cells.vertex_cell, wanted.vertex_cell)
+        np.testing.assert_allclose(cells.vertex_distance, wanted.vertex_distance, rtol=1e-12)
+        np.testing.assert_allclose(cells.areas, wanted.areas, rtol=0, atol=1e-6 * mesh.area)
+        assert len(cells.branch_points) == len(wanted.branch_points)
+    check(mesh, exact_cells(own, sites))
+
+
+@pytest.mark.parametrize("total", [1.0, 5.0, 8.0])
+def test_exact_cells_about_a_tip_are_its_sectors(total):
+    """Cones that need no place, of less than a full turn and of more: sites all round have equal sectors."""
+    around, count = 36, 9
+    i = np.arange(around)
+    triangles = np.stack([0 * i, 1 + i, 1 + (i + 1) % around], axis=1)
+    mesh = sb.Mesh(
+        np.zeros((around + 1, 3)), triangles, lengths=np.tile([1, 2 * np.sin(total / around / 2), 1], (around, 1))
+    )
+    assert mesh.total_angles[0] == pytest.approx(total)
+    cells = exact_cells(mesh, sb.SurfacePoints(i[:: around // count], np.tile([0.5, 0.25, 0.25], (count, 1))))
+    np.testing.assert_allclose(cells.areas, mesh.area / count, rtol=1e-4)
+
+
+def test_of_sites_at_one_place_the_first_has_the_exact_cell():
+    """On both sides of an edge, of surfaces that are shown in one place and where they are."""
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    a, b = mesh.triangles[0], next(t for t in mesh.triangles[1:] if len(set(t) & set(mesh.triangles[0])) == 2)
+    shared = sorted(set(a) & set(b))
+    faces = np.array([0, np.flatnonzero((mesh.triangles == b).all(axis=1))[0], 200], dtype=np.int32)
+    weights = [np.isin(t, shared[0]) * 0.3 + np.isin(t, shared[1]) * 0.7 for t in (a, b)]
+    sites = sb.SurfacePoints(faces, np.array([*weights, [0.2, 0.3, 0.5]]))
+    for surface in (mesh, shown_nowhere(mesh)):
+        areas = exact_cells(surface, sites).areas
+        assert areas[1] == 0
+        assert areas[[0, 2]].min() > 0.1 * mesh.area
 
 
 def test_a_mesh_with_lengths_of_its_own_is_refused():
