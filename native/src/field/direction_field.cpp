@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "field/connection/filled_surface.h"
+#include "field/linear/row_blocks.h"
 
 namespace saddleback {
 namespace {
@@ -42,11 +43,12 @@ DirectionField::DirectionField(const Mesh& mesh, int symmetry, std::vector<doubl
     if (!mesh.is_boundary(v) && units_of(filled.node_of[v]) != 0)
       singularities_.push_back({v, units_of(filled.node_of[v])});
   for (const Index node : filled.loop_nodes) loop_units_.push_back(units_of(node) - symmetry);
-  std::vector<double> differences;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    if (v % 16384 == 0) stage.check();
-    measure_fan(v, differences);
-  }
+  const int threads = thread_count(0);
+  std::vector<std::vector<double>> differences(threads);
+  parallel_for(mesh.vertex_count(), threads, k_rows_a_block, [&](Index v, int thread) {
+    if (v % k_rows_a_block == 0) stage.check();
+    measure_fan(v, differences[thread]);
+  });
 }
 
 std::vector<Index> DirectionField::sharp_edges() const {

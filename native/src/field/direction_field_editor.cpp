@@ -13,6 +13,7 @@
 #include "field/connection/shape_operator.h"
 #include "field/connection/sharp_loops.h"
 #include "field/connection/untangle_turns.h"
+#include "field/linear/row_blocks.h"
 #include "field/smoothing/given_directions.h"
 #include "field/smoothing/smooth_powers.h"
 #include "field/smoothing/stroke_targets.h"
@@ -61,11 +62,11 @@ std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double wei
   const std::vector<FaceBending> bending = bending_of_faces(mesh, shape_operator(mesh, stage));
   stage.check();
   std::vector<Complex> result(mesh.face_count());
-  for (Index f = 0; f < mesh.face_count(); ++f) {
+  for_rows(0, mesh.face_count(), 0, [&](Index f) {
     const Complex& difference = bending[f].difference;
     result[f] =
         weight * mesh.face_area(f) * (symmetry == 2 ? -bending[f].sum * difference : times(difference, difference));
-  }
+  });
   return result;
 }
 
@@ -89,7 +90,7 @@ struct DirectionFieldEditor::Kept {
   const Mesh& mesh;
   const int symmetry;
   SurfaceConnection connection;
-  std::unique_ptr<FilledSurface> filled;  // made, as connection and loops, by the first call
+  std::unique_ptr<FilledSurface> filled;  // made, as connection and loops, when first needed
   DualLoops loops;
   std::unique_ptr<TrivialConnection> trivial;
   // The last trivial connection and what strokes turned it by.
@@ -97,6 +98,7 @@ struct DirectionFieldEditor::Kept {
   std::vector<double> given, angles, turns, shift;  // shift: over vertices
 
   void prepare(const JobStage& stage);
+  void find_loops(const JobStage& stage);
   DirectionField designed(const DirectionFieldOptions& options, const JobStage& stage);
   DirectionField automatic(const DirectionFieldOptions& options, const JobStage& stage);
 
@@ -111,8 +113,11 @@ struct DirectionFieldEditor::Kept {
 };
 
 void DirectionFieldEditor::Kept::prepare(const JobStage& stage) {
+  if (connection.weight.empty()) connection = surface_connection(mesh, stage);
+}
+
+void DirectionFieldEditor::Kept::find_loops(const JobStage& stage) {
   if (filled) return;
-  connection = surface_connection(mesh, stage);
   auto made = std::make_unique<FilledSurface>(mesh);
   stage.check();
   loops = dual_loops(mesh, *made);
@@ -222,6 +227,7 @@ DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions&
   const bool along_boundary = options.align == FieldAlignment::boundary;
   const std::vector<StrokeFaces> strokes = stroke_faces(mesh, symmetry, options.strokes, along_boundary);
   const std::vector<Complex> wanted = wanted_powers(mesh, symmetry, options, stage);
+  find_loops(stage);
   connect(options, wanted, stage.part(0, 0.6));
 
   std::vector<double> turned_angles = angles, turned_turns = turns;
@@ -254,43 +260,47 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
       stroke_faces(mesh, symmetry, options.strokes, options.align == FieldAlignment::boundary);
   FaceSprings<Complex> springs = power_springs(mesh, symmetry, strokes);
   if (const std::vector<Complex> wanted = wanted_powers(mesh, symmetry, options, stage); !wanted.empty()) {
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for_rows(0, mesh.face_count(), 0, [&](Index f) {
       const double stiffness = std::abs(wanted[f]), both = stiffness + springs.stiffness[f];
-      if (stiffness == 0 || both == k_fixed) continue;
+      if (stiffness == 0 || both == k_fixed) return;
       springs.target[f] = (springs.stiffness[f] * springs.target[f] + wanted[f]) / both;
       springs.stiffness[f] = both;
-    }
+    });
   }
   std::vector<bool> is_drawn(mesh.component_count(), false);
   const auto component = [&](Index f) { return mesh.component_of(mesh.triangles()[f][0]); };
   for (Index f = 0; f < mesh.face_count(); ++f)
     if (springs.stiffness[f] > 0) is_drawn[component(f)] = true;
 
-  const auto graph = power_graph(mesh, connection, symmetry, stage);
+  const PowerGraph graph{connection, symmetry};
   const bool any_drawn = std::find(is_drawn.begin(), is_drawn.end(), true) != is_drawn.end();
   const bool any_free = std::find(is_drawn.begin(), is_drawn.end(), false) != is_drawn.end();
   std::vector<Complex> powers;
   if (any_drawn) powers = relax_powers(mesh, graph, springs, k_power_accuracy, stage.part(0, any_free ? 0.4 : 1));
   if (any_free) {
+    find_loops(stage);
     std::vector<double> none(mesh.halfedge_count(), 0.0);
     std::vector<Complex> start(mesh.face_count());
     const std::vector<double> parallel = integrate(mesh, connection, loops, symmetry, none);
-    for (Index f = 0; f < mesh.face_count(); ++f) start[f] = std::polar(1.0, symmetry * parallel[f]);
+    for_rows(0, mesh.face_count(), 0, [&](Index f) { start[f] = std::polar(1.0, symmetry * parallel[f]); });
     std::vector<Complex> smooth = smoothest_powers(mesh, graph, std::move(start), stage.part(any_drawn ? 0.4 : 0, 1));
     std::vector<Complex> unit(mesh.component_count(), Complex(0));  // turns the first face's angle to 0
     for (Index f = 0; f < mesh.face_count(); ++f)
       if (unit[component(f)] == Complex(0)) unit[component(f)] = std::polar(1.0, -std::arg(smooth[f]));
     if (!any_drawn) powers.resize(mesh.face_count());
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for_rows(0, mesh.face_count(), 0, [&](Index f) {
       if (!is_drawn[component(f)]) powers[f] = times(unit[component(f)], smooth[f]);
+    });
   }
   std::vector<double> own(mesh.face_count()), turned(mesh.halfedge_count(), 0.0);
-  for (Index f = 0; f < mesh.face_count(); ++f) own[f] = std::arg(powers[f]) / symmetry;
-  for (const Index h : inner_edges(mesh)) {
-    const Index f = Mesh::face_of(h), g = Mesh::face_of(mesh.twin(h));
-    turned[h] = std::remainder(own[g] - own[f] - connection.transport[h], k_turn / symmetry);
-    turned[mesh.twin(h)] = -turned[h];
-  }
+  for_rows(0, mesh.face_count(), 0, [&](Index f) { own[f] = std::arg(powers[f]) / symmetry; });
+  for_rows(0, mesh.halfedge_count(), 0, [&](Index h) {
+    const Index twin = mesh.twin(h);
+    if (twin < h) return;
+    const double turn = own[Mesh::face_of(twin)] - own[Mesh::face_of(h)] - connection.transport[h];
+    turned[h] = std::remainder(turn, k_turn / symmetry);
+    turned[twin] = -turned[h];
+  });
   return {mesh, symmetry, std::move(own), std::move(turned), stage};
 }
 

@@ -8,8 +8,8 @@
 
 #include "saddleback/error.h"
 
+#include "field/linear/row_blocks.h"
 #include "field/smoothing/face_springs.h"
-#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -91,9 +91,11 @@ class Splines {
     const auto count = static_cast<Index>(places.size());
     bends_.resize(count);
     std::atomic<Index> done{0};
-    parallel_for(count, 0, 1, [&](Index i, int) {
+    const NestedThreads threads(count);
+    parallel_for(count, threads.tasks, 1, [&](Index i, int) {
       const double begin = 0.1 + 0.9 * static_cast<double>(done) / count, half = 0.45 / count;
-      bends_[i] = bend_of(i, solver, stage.part(begin, begin + half), stage.part(begin + half, begin + 2 * half));
+      bends_[i] =
+          bend_of(i, solver, stage.part(begin, begin + half), stage.part(begin + half, begin + 2 * half), threads.rows);
       ++done;
     });
   }
@@ -143,18 +145,18 @@ class Splines {
   }
 
   std::vector<double> bend_of(Index place, const MultigridSolver<double>& solver, const JobStage& first,
-                              const JobStage& second) const {
+                              const JobStage& second, int threads) const {
     const SurfacePoint& point = places_[place];
     const Index component = component_of(mesh_, point);
     std::vector<double> right(mesh_.vertex_count(), 0.0);
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
       if (mesh_.component_of(v) == component) right[v] = -areas_[v];
     for (int k = 0; k < 3; ++k) right[mesh_.triangles()[point.face][k]] += point.barycentric[k];
-    std::vector<double> once = solver.solve(right, {}, k_accuracy, first);
+    std::vector<double> once = solver.solve(right, {}, k_accuracy, first, threads);
     double mean = mean_of(once, component);
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
       right[v] = mesh_.component_of(v) == component ? areas_[v] * (once[v] - mean) : 0;
-    std::vector<double> bend = solver.solve(right, {}, k_accuracy, second);
+    std::vector<double> bend = solver.solve(right, {}, k_accuracy, second, threads);
     mean = mean_of(bend, component);  // Constants are free, so that of the vertex that was held must not matter.
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
       if (mesh_.component_of(v) == component) bend[v] -= mean;

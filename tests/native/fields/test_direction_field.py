@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import re
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -379,17 +380,24 @@ def test_renumbered_meshes_have_the_same_field() -> None:
     assert np.abs(second.vectors - first.vectors[faces]).max() < 1e-4
 
 
-def test_the_same_bytes_every_time_and_on_one_core() -> None:
-    mesh = sb.Mesh(*meshes.double_torus())
-    wanted = {3: -1, 20: -1}
-    angles = sb.direction_field(mesh, 1, wanted).angles
-    assert np.array_equal(sb.direction_field(mesh, 1, wanted).angles, angles)
+@pytest.mark.parametrize(
+    "arrays", [meshes.double_torus(), meshes.torus(240, 80)], ids=["small", "many faces for each core"]
+)
+@pytest.mark.parametrize(
+    "options", [{"singularities": {3: -1, 20: -1}}, {}, {"symmetry": 4, "align": "curvature"}], ids=str
+)
+def test_the_same_bytes_every_time_and_on_one_core(arrays: meshes.Arrays, options: dict[str, Any]) -> None:
+    mesh = sb.Mesh(*arrays)
+    if mesh.genus == 1 and "singularities" in options:
+        options = {"singularities": {3: -1, 20: 1}}
+    angles = sb.direction_field(mesh, **options).angles
+    assert np.array_equal(sb.direction_field(mesh, **options).angles, angles)
     if not hasattr(os, "sched_setaffinity"):
         return
     cores = os.sched_getaffinity(0)
     try:
         os.sched_setaffinity(0, {min(cores)})
-        assert np.array_equal(sb.direction_field(mesh, 1, wanted).angles, angles)
+        assert np.array_equal(sb.direction_field(mesh, **options).angles, angles)
     finally:
         os.sched_setaffinity(0, cores)
 

@@ -5,6 +5,7 @@
 
 #include "saddleback/field/curvature.h"
 
+#include "field/linear/row_blocks.h"
 #include "support/hypotenuse.h"
 
 namespace saddleback {
@@ -15,25 +16,34 @@ Vec3 face_normal(const Mesh& mesh, Index face) {
   return (mesh.position(t[1]) - mesh.position(t[0])).cross(mesh.position(t[2]) - mesh.position(t[0])).normalized();
 }
 
+/// Calls visit(h) for the half-edges out of a vertex, one a face.
+template <class Visit>
+void for_fan(const Mesh& mesh, Index vertex, Visit&& visit) {
+  const Index first = mesh.first_halfedge(vertex);
+  Index h = first;
+  do {
+    visit(h);
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+}
+
 /// Means by angle. Where faces lie folded onto each other these are nothing but rounding, or zero; there the normal of
 /// the face of the widest corner stands for all.
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
   constexpr double k_rounding = 1e-12;
-  std::vector<Vec3> normals(mesh.vertex_count(), Vec3::Zero());
-  std::vector<Index> widest(mesh.vertex_count(), k_none);
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 normal = face_normal(mesh, f);
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      const Index v = mesh.from(h);
-      normals[v] += mesh.corner_angle(h) * normal;
-      if (widest[v] == k_none || mesh.corner_angle(h) > mesh.corner_angle(widest[v])) widest[v] = h;
-    }
-  }
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    if (normals[v].norm() <= k_rounding * mesh.corner_angle(widest[v]))
-      normals[v] = face_normal(mesh, Mesh::face_of(widest[v]));
-    normals[v].normalize();
-  }
+  std::vector<Vec3> normals(mesh.vertex_count()), of_faces(mesh.face_count());
+  for_rows(0, mesh.face_count(), 0, [&](Index f) { of_faces[f] = face_normal(mesh, f); });
+  for_rows(0, mesh.vertex_count(), 0, [&](Index v) {
+    Vec3 normal = Vec3::Zero();
+    Index widest = mesh.first_halfedge(v);
+    for_fan(mesh, v, [&](Index h) {
+      normal += mesh.corner_angle(h) * of_faces[Mesh::face_of(h)];
+      const double more = mesh.corner_angle(h) - mesh.corner_angle(widest);
+      if (more > 0 || (more == 0 && h < widest)) widest = h;
+    });
+    if (normal.norm() <= k_rounding * mesh.corner_angle(widest)) normal = of_faces[Mesh::face_of(widest)];
+    normals[v] = normal.normalized();
+  });
   return normals;
 }
 
@@ -80,31 +90,34 @@ Mat3 tangential(const Mat3& value, const Vec3& normal) {
 
 ShapeOperator shape_operator(const Mesh& mesh, const JobStage& stage) {
   mesh.require_space("curvature");
-  ShapeOperator result{vertex_normals(mesh), std::vector<Mat3>(mesh.vertex_count(), Mat3::Zero())};
-  std::vector<double> areas(mesh.vertex_count(), 0.0);
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    if (f % 16384 == 0) stage.check();
+  ShapeOperator result{vertex_normals(mesh), std::vector<Mat3>(mesh.vertex_count())};
+  std::vector<Mat3> of_faces(mesh.face_count());
+  for_rows(0, mesh.face_count(), 0, [&](Index f) {
+    if (f % k_rows_a_block == 0) stage.check();
     const auto axes = face_axes(mesh, f);
-    const Mat3 value = axes * operator_of_face(mesh, f, axes, result.normals) * axes.transpose();
-    for (const Index v : mesh.triangles()[f]) {
-      result.operators[v] += mesh.face_area(f) * value;
-      areas[v] += mesh.face_area(f);
-    }
-  }
-  for (Index v = 0; v < mesh.vertex_count(); ++v)
-    result.operators[v] = tangential(result.operators[v] / areas[v], result.normals[v]);
+    of_faces[f] = axes * operator_of_face(mesh, f, axes, result.normals) * axes.transpose();
+  });
+  for_rows(0, mesh.vertex_count(), 0, [&](Index v) {
+    Mat3 sum = Mat3::Zero();
+    double area = 0;
+    for_fan(mesh, v, [&](Index h) {
+      sum += mesh.face_area(Mesh::face_of(h)) * of_faces[Mesh::face_of(h)];
+      area += mesh.face_area(Mesh::face_of(h));
+    });
+    result.operators[v] = tangential(sum / area, result.normals[v]);
+  });
   return result;
 }
 
 std::vector<FaceBending> bending_of_faces(const Mesh& mesh, const ShapeOperator& shape) {
   std::vector<FaceBending> result(mesh.face_count());
-  for (Index f = 0; f < mesh.face_count(); ++f) {
+  for_rows(0, mesh.face_count(), 0, [&](Index f) {
     const auto axes = face_axes(mesh, f);
     const Triangle& t = mesh.triangles()[f];
     const Mat3 mean = (shape.operators[t[0]] + shape.operators[t[1]] + shape.operators[t[2]]) / 3;
     const Eigen::Matrix2d flat = axes.transpose() * mean * axes;
     result[f] = {{flat(0, 0) - flat(1, 1), 2 * flat(0, 1)}, flat.trace()};
-  }
+  });
   return result;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "field/linear/row_blocks.h"
+
 namespace saddleback {
 namespace {
 
@@ -25,16 +27,16 @@ double chart_angle(const Mesh& mesh, Index h) {
 SurfaceConnection surface_connection(const Mesh& mesh, const JobStage& stage) {
   SurfaceConnection result{std::vector<double>(mesh.halfedge_count(), 0.0),
                            std::vector<double>(mesh.halfedge_count(), 1.0)};
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (h % 65536 == 0) stage.check();
+  for_rows(0, mesh.halfedge_count(), 0, [&](Index h) {
+    if (h % k_rows_a_block == 0) stage.check();
     const Index twin = mesh.twin(h);
-    if (twin == k_none || twin < h) continue;
+    if (twin < h) return;
     const double turn = chart_angle(mesh, twin) + std::numbers::pi - chart_angle(mesh, h);
     result.transport[h] = std::remainder(turn, 2 * std::numbers::pi);
     result.transport[twin] = -result.transport[h];
     const double weight = 0.5 * (apex_cotangent(mesh, h) + apex_cotangent(mesh, twin));
     result.weight[h] = result.weight[twin] = std::clamp(weight, 1 / k_weight_range, k_weight_range);
-  }
+  });
   return result;
 }
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "field/connection/sharp_loops.h"
-#include "support/threads/parallel.h"
+#include "field/linear/row_blocks.h"
 
 namespace saddleback {
 namespace {
@@ -138,14 +138,15 @@ void TrivialConnection::find_harmonic_forms(const JobStage& stage) {
   const auto count = static_cast<Index>(loops_.loops.size());
   std::vector<std::vector<double>> potentials(count);
   std::atomic<Index> done{0};
-  parallel_for(count, 0, 1, [&](Index i, int) {
+  const NestedThreads threads(count);
+  parallel_for(count, threads.tasks, 1, [&](Index i, int) {
     std::vector<double> right(filled_.node_count, 0.0);
     for (const Index h : loops_.loops[i]) {
       right[filled_.node_of[mesh_.to(h)]] += connection_.weight[h];
       right[filled_.node_of[mesh_.from(h)]] -= connection_.weight[h];
     }
     const double begin = static_cast<double>(done) / count;
-    potentials[i] = solver_->solve(right, {}, k_accuracy, stage.part(begin, begin + 1.0 / count));
+    potentials[i] = solver_->solve(right, {}, k_accuracy, stage.part(begin, begin + 1.0 / count), threads.rows);
     ++done;
   });
   harmonic_potentials_ = std::move(potentials);

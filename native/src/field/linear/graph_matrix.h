@@ -42,11 +42,10 @@ Scalar row_sum(const GraphMatrix<Scalar>& matrix, Index i, const std::vector<Sca
   return sum;
 }
 
-/// y = matrix x.
+/// Row i times x.
 template <class Scalar>
-void multiply(const GraphMatrix<Scalar>& matrix, const std::vector<Scalar>& x, std::vector<Scalar>& y) {
-  y.resize(x.size());
-  for (Index i = 0; i < matrix.size(); ++i) y[i] = matrix.diagonal[i] * x[i] + row_sum(matrix, i, x);
+Scalar row_product(const GraphMatrix<Scalar>& matrix, Index i, const std::vector<Scalar>& x) {
+  return matrix.diagonal[i] * x[i] + row_sum(matrix, i, x);
 }
 
 /// An edge of a graph: the matrix holds -weight at (a, b), its conjugate at (b, a), and its size in both diagonals.

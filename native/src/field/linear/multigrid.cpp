@@ -8,181 +8,20 @@
 #include <cmath>
 #include <type_traits>
 
+#include "field/linear/color_order.h"
+#include "field/linear/row_blocks.h"
+
 namespace saddleback {
 namespace {
 
-constexpr Index k_coarsest = 120;         // nodes that a dense inverse is cheap for
-constexpr double k_dominant = 10;         // a diagonal larger than this many times its row needs no coarse correction
-constexpr double k_stronger = 1 + 1e-9;   // many are equal but for rounding, which must not say who pairs with whom
-constexpr double k_weak = 0.5;            // of a node's strongest tie: others say nothing of how it varies
-constexpr double k_stalled = 0.9;         // of the nodes left by pairing: weak ties are taken then
-constexpr double k_loosest = 4;           // see is_too_loose; 8 in [napov2012]
-constexpr double k_enough = 0.25;         // the K-cycle's second step is left out when the first one gains this much
-constexpr Index k_nodes_a_check = 32768;  // about a millisecond between looks at the job
-
-/// Holds what coarsening one level decides: node of the next level and phase of the interpolation.
-template <class Scalar>
-struct Aggregates {
-  std::vector<Index> of;
-  std::vector<Scalar> phase;
-  Index count = 0;
-};
-
-/// The interpolation that takes a node's value to its neighbor across an entry of the matrix.
-double transported(double) { return 1; }
-std::complex<double> transported(const std::complex<double>& entry) { return -std::conj(entry) / std::abs(entry); }
+constexpr Index k_coarsest = 120;  // nodes that a dense inverse is cheap for
+constexpr double k_enough = 0.25;  // the K-cycle's second step is left out when the first one gains this much
 
 template <class Scalar>
-double sum_of_ties(const GraphMatrix<Scalar>& matrix, Index i) {
-  double sum = 0;
-  for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) sum += std::abs(matrix.values[k]);
-  return sum;
-}
-
-template <class Scalar>
-bool needs_no_correction(const GraphMatrix<Scalar>& matrix, Index i) {
-  return matrix.diagonal[i] >= k_dominant * sum_of_ties(matrix, i);
-}
-
-/// Tells whether Gauss-Seidel on the finer level, on which two nodes have these sums of ties, evens them out so slowly
-/// that they must stay apart: two triangles that are tied firmly move together, and their neighbors hardly move them.
-/// After the quality of aggregates [napov2012].
-bool is_too_loose(double tie, double of_one, double of_other) {
-  return of_one * of_other > k_loosest * tie * (of_one + of_other);
-}
-
-template <class Scalar>
-double strongest_tie(const GraphMatrix<Scalar>& matrix, Index i) {
-  double most = 0;
-  for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k)
-    most = std::max(most, double(std::abs(matrix.values[k])));
-  return most;
-}
-
-/// Each node with the free neighbor that it is tied to most, unless either is tied much more to others: who takes a
-/// neighbor from its partner leaves that one to take another's, and so on all over the mesh. Those without one join the
-/// strongest neighbor's pair. Ties below `weak` of a node's strongest count for nothing. `finer`: sums of the ties that
-/// each has on a finer level, to compare with; zeros: pairs may be tied loosely.
-template <class Scalar>
-Aggregates<Scalar> pair_up(const GraphMatrix<Scalar>& matrix, const std::vector<double>& finer, double weak,
-                           const JobStage& stage) {
-  constexpr Index k_free = -2;
-  Aggregates<Scalar> result{std::vector<Index>(matrix.size(), k_free), std::vector<Scalar>(matrix.size(), Scalar(1))};
-  std::vector<double> strongest(matrix.size()), whole;  // `finer` of each aggregate
-  for (Index i = 0; i < matrix.size(); ++i) strongest[i] = strongest_tie(matrix, i);
-  for (Index i = 0; i < matrix.size(); ++i) {
-    if (i % k_nodes_a_check == 0) stage.check();
-    if (result.of[i] != k_free) continue;
-    if (needs_no_correction(matrix, i)) {
-      result.of[i] = k_none;
-      continue;
-    }
-    Index free = k_none, joined = k_none;
-    for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
-      const Index j = matrix.columns[k];
-      const double strength = std::abs(matrix.values[k]);
-      if (strength < weak * strongest[i]) continue;
-      if (is_too_loose(strength, finer[i], result.of[j] >= 0 ? whole[result.of[j]] : finer[j])) continue;
-      const auto beats = [&](Index other) {
-        return other == k_none || strength > k_stronger * std::abs(matrix.values[other]);
-      };
-      if (result.of[j] == k_free && strength >= weak * strongest[j] && beats(free) && !needs_no_correction(matrix, j))
-        free = k;
-      if (result.of[j] >= 0 && beats(joined)) joined = k;
-    }
-    if (free != k_none) {
-      const Index j = matrix.columns[free];
-      result.of[i] = result.of[j] = result.count++;
-      result.phase[j] = transported(matrix.values[free]);
-      whole.push_back(finer[i] + finer[j]);
-    } else if (joined != k_none) {
-      const Index j = matrix.columns[joined];
-      result.of[i] = result.of[j];
-      whole[result.of[i]] += finer[i];
-      result.phase[i] = times(result.phase[j], Scalar(conjugate(transported(matrix.values[joined]))));
-    } else {
-      result.of[i] = result.count++;
-      whole.push_back(finer[i]);
-    }
-  }
-  return result;
-}
-
-/// Interpolation^H matrix interpolation.
-template <class Scalar>
-GraphMatrix<Scalar> galerkin(const GraphMatrix<Scalar>& matrix, const Aggregates<Scalar>& aggregates,
-                             const JobStage& stage) {
-  std::vector<Index> begins(aggregates.count + 1, 0), members(matrix.size());
-  for (const Index a : aggregates.of)
-    if (a >= 0) ++begins[a + 1];
-  for (Index a = 0; a < aggregates.count; ++a) begins[a + 1] += begins[a];
-  std::vector<Index> next(begins.begin(), begins.end() - 1);
-  for (Index i = 0; i < matrix.size(); ++i)
-    if (aggregates.of[i] >= 0) members[next[aggregates.of[i]]++] = i;
-
-  GraphMatrix<Scalar> coarse;
-  coarse.begins.reserve(aggregates.count + 1);
-  coarse.diagonal.reserve(aggregates.count);
-  coarse.columns.reserve(matrix.columns.size() / 2);
-  coarse.values.reserve(matrix.columns.size() / 2);
-  std::vector<Index> place(aggregates.count, k_none);  // where the row being made has this column
-  for (Index a = 0; a < aggregates.count; ++a) {
-    if (a % k_nodes_a_check == 0) stage.check();
-    const auto row = static_cast<Index>(coarse.columns.size());
-    double diagonal = 0;
-    for (Index m = begins[a]; m < begins[a + 1]; ++m) {
-      const Index i = members[m];
-      diagonal += matrix.diagonal[i];
-      for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
-        const Index j = matrix.columns[k], b = aggregates.of[j];
-        if (b < 0) continue;
-        const Scalar entry = times(times(conjugate(aggregates.phase[i]), matrix.values[k]), aggregates.phase[j]);
-        if (b == a) {
-          diagonal += std::real(entry);
-        } else if (place[b] >= row) {
-          coarse.values[place[b]] += entry;
-        } else {
-          place[b] = static_cast<Index>(coarse.columns.size());
-          coarse.columns.push_back(b);
-          coarse.values.push_back(entry);
-        }
-      }
-    }
-    coarse.diagonal.push_back(diagonal);
-    coarse.begins.push_back(static_cast<Index>(coarse.columns.size()));
-  }
-  return coarse;
-}
-
-/// Appends as one step what two steps of pairing do.
-template <class Scalar>
-void append_step(Aggregates<Scalar>& first, const Aggregates<Scalar>& second) {
-  for (std::size_t i = 0; i < first.of.size(); ++i) {
-    if (first.of[i] < 0) continue;
-    first.phase[i] = times(first.phase[i], second.phase[first.of[i]]);
-    first.of[i] = second.of[first.of[i]];
-  }
-  first.count = second.count;
-}
-
-template <class Scalar>
-Scalar dot(const std::vector<Scalar>& a, const std::vector<Scalar>& b) {
-  Scalar sum(0);
-  for (std::size_t i = 0; i < a.size(); ++i) sum += times(conjugate(a[i]), b[i]);
-  return sum;
-}
-
-template <class Scalar>
-double squared_norm(const std::vector<Scalar>& a) {
-  double sum = 0;
-  for (const Scalar& value : a) sum += static_cast<double>(std::norm(value));
-  return sum;
-}
-
-/// a += factor b
-template <class Scalar>
-void add(std::vector<Scalar>& a, Scalar factor, const std::vector<Scalar>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] += times(factor, b[i]);
+double squared_norm(const std::vector<Scalar>& a, int threads) {
+  return sums_of_rows<std::array<double, 1>>(static_cast<Index>(a.size()), threads, [&](Index i, auto& sums) {
+    sums[0] += static_cast<double>(std::norm(a[i]));
+  })[0];
 }
 
 }  // namespace
@@ -195,47 +34,75 @@ MultigridSolver<Scalar>::MultigridSolver(GraphMatrix<Scalar> matrix, const JobSt
 
 template <class Scalar>
 auto MultigridSolver<Scalar>::make_level(const GraphMatrix<Scalar>& matrix, const JobStage& stage) -> Level {
+  ColorOrder colors = order_by_color(matrix, stage);
+  const Index size = matrix.size();
   Level level;
-  level.matrix.begins = matrix.begins;
+  level.colors = std::move(colors.begins);
+  level.order = std::move(colors.order);
+  level.place = std::move(colors.place);
+  level.matrix.begins.resize(size + 1);
+  for (Index i = 0; i < size; ++i) {
+    const Index node = level.order[i];
+    level.matrix.begins[i + 1] = level.matrix.begins[i] + matrix.begins[node + 1] - matrix.begins[node];
+  }
   level.matrix.columns.resize(matrix.columns.size());
   level.matrix.values.resize(matrix.columns.size());
-  level.matrix.diagonal.assign(matrix.diagonal.begin(), matrix.diagonal.end());
-  level.middles.reserve(matrix.size());
-  for (Index i = 0; i < matrix.size(); ++i) {
-    if (i % k_nodes_a_check == 0) stage.check();
-    Index low = matrix.begins[i], high = matrix.begins[i + 1];
-    for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
-      const Index to = matrix.columns[k] < i ? low++ : --high;
-      level.matrix.columns[to] = matrix.columns[k];
+  level.matrix.diagonal.resize(size);
+  level.middles.resize(size);
+  level.inverse_diagonal.resize(size);
+  for_rows(0, size, 0, [&](Index i) {
+    const Index node = level.order[i];
+    Index low = level.matrix.begins[i], high = level.matrix.begins[i + 1];
+    for (Index k = matrix.begins[node]; k < matrix.begins[node + 1]; ++k) {
+      const Index column = level.place[matrix.columns[k]], to = column < i ? low++ : --high;
+      level.matrix.columns[to] = column;
       level.matrix.values[to] = Small(matrix.values[k]);
     }
-    level.middles.push_back(low);
-    level.inverse_diagonal.push_back(Small(static_cast<float>(1 / matrix.diagonal[i])));
-  }
+    level.middles[i] = low;
+    level.matrix.diagonal[i] = static_cast<float>(matrix.diagonal[node]);
+    level.inverse_diagonal[i] = static_cast<float>(1 / matrix.diagonal[node]);
+  });
   return level;
+}
+
+/// Ties a level to the next, in the orders of both.
+template <class Scalar>
+void MultigridSolver<Scalar>::tie(Level& fine, const Level& coarse, const Aggregates<Scalar>& aggregates) {
+  const Index size = fine.matrix.size(), coarse_size = coarse.matrix.size(), last_color = fine.colors.end()[-2];
+  fine.aggregate.resize(size);
+  fine.phase.resize(size);
+  for_rows(0, size, 0, [&](Index i) {
+    const Index node = fine.order[i], of = aggregates.of[node];
+    fine.aggregate[i] = of < 0 ? k_none : coarse.place[of];
+    fine.phase[i] = Small(aggregates.phase[node]);
+  });
+  fine.member_begins.assign(coarse_size + 1, 0);
+  for_rows(0, coarse_size, 0, [&](Index a) {
+    aggregates.for_members(coarse.order[a], [&](Index i) {
+      if (fine.place[i] < last_color) ++fine.member_begins[a + 1];
+    });
+  });
+  for (Index a = 0; a < coarse_size; ++a) fine.member_begins[a + 1] += fine.member_begins[a];
+  fine.members.resize(fine.member_begins.back());
+  for_rows(0, coarse_size, 0, [&](Index a) {
+    Index at = fine.member_begins[a];
+    aggregates.for_members(coarse.order[a], [&](Index i) {
+      if (fine.place[i] < last_color) fine.members[at++] = fine.place[i];
+    });
+  });
 }
 
 template <class Scalar>
 void MultigridSolver<Scalar>::coarsen(const JobStage& stage) {
   GraphMatrix<Scalar> owned;
   const GraphMatrix<Scalar>* matrix = &matrix_;
-  while (true) {
-    levels_.push_back(make_level(*matrix, stage));
-    if (matrix->size() <= k_coarsest) break;
-    const std::vector<double> any(matrix->size(), 0.0);
-    Aggregates<Scalar> aggregates = pair_up(*matrix, any, k_weak, stage);
-    if (aggregates.count > k_stalled * matrix->size()) aggregates = pair_up(*matrix, any, 0, stage);
-    GraphMatrix<Scalar> coarse = galerkin(*matrix, aggregates, stage);
-    std::vector<double> ties(aggregates.count, 0.0);
-    for (Index i = 0; i < matrix->size(); ++i)
-      if (aggregates.of[i] >= 0) ties[aggregates.of[i]] += sum_of_ties(*matrix, i);
-    const Aggregates<Scalar> second = pair_up(coarse, ties, k_weak, stage);
-    coarse = galerkin(coarse, second, stage);
-    append_step(aggregates, second);
-    levels_.back().aggregate = std::move(aggregates.of);
-    levels_.back().phase.assign(aggregates.phase.begin(), aggregates.phase.end());
-    owned = std::move(coarse);
+  levels_.push_back(make_level(*matrix, stage));
+  while (matrix->size() > k_coarsest) {
+    Coarsening<Scalar> next = coarsened(*matrix, stage);
+    owned = std::move(next.matrix);
     matrix = &owned;
+    levels_.push_back(make_level(*matrix, stage));
+    tie(levels_.end()[-2], levels_.back(), next.aggregates);
   }
   factor_coarsest(*matrix);
 }
@@ -254,44 +121,58 @@ void MultigridSolver<Scalar>::factor_coarsest(const GraphMatrix<Scalar>& matrix)
   coarsest_.assign(inverse.data(), inverse.data() + inverse.size());
 }
 
-/// Gauss-Seidel forward from zero, the correction of the next level, Gauss-Seidel back.
+/// Gauss-Seidel forward from zero, the correction of the next level, Gauss-Seidel back: one color after the other, the
+/// nodes of each at the same time.
 template <class Scalar>
 void MultigridSolver<Scalar>::cycle(std::size_t level, const SmallVector& right, SmallVector& solution, Workspace& work,
                                     const JobStage& stage) const {
   stage.check();
   const Level& here = levels_[level];
   const GraphMatrix<Small>& matrix = here.matrix;
-  const Index size = matrix.size();
+  const Index size = matrix.size(), last_color = here.colors.end()[-2];
   solution.resize(size);
-  if (level + 1 == levels_.size()) {
-    for (Index i = 0; i < size; ++i) {
-      Scalar sum(0);
-      for (Index j = 0; j < size; ++j) sum += times(coarsest_[i * size + j], Scalar(right[j]));
-      solution[i] = Small(sum);
-    }
-    return;
-  }
-  for (Index i = 0; i < size; ++i) {
-    Small sum = right[i];
-    for (Index k = matrix.begins[i]; k < here.middles[i]; ++k)
-      sum -= times(matrix.values[k], solution[matrix.columns[k]]);
-    solution[i] = times(sum, here.inverse_diagonal[i]);
-  }
-  Vectors& coarse = work.levels_[level + 1];
-  coarse.right.assign(levels_[level + 1].matrix.size(), Small(0));
-  for (Index i = 0; i < size; ++i) {
-    if (here.aggregate[i] < 0) continue;
-    // Of the residual only what lies beyond the diagonal is left.
+  if (level + 1 == levels_.size()) return solve_coarsest(right, solution);
+  for (std::size_t c = 0; c + 1 < here.colors.size(); ++c)
+    for_rows(here.colors[c], here.colors[c + 1], work.threads_, [&](Index i) {
+      Small sum = right[i];
+      for (Index k = matrix.begins[i]; k < here.middles[i]; ++k)
+        sum -= times(matrix.values[k], solution[matrix.columns[k]]);
+      solution[i] = sum * here.inverse_diagonal[i];
+    });
+  // Of the residual only what lies beyond the diagonal is left.
+  SmallVector& rest = work.levels_[level].rest;
+  rest.resize(last_color);
+  for_rows(0, last_color, work.threads_, [&](Index i) {
     Small residual(0);
     for (Index k = here.middles[i]; k < matrix.begins[i + 1]; ++k)
       residual -= times(matrix.values[k], solution[matrix.columns[k]]);
-    coarse.right[here.aggregate[i]] += times(conjugate(here.phase[i]), residual);
-  }
+    rest[i] = times(conjugate(here.phase[i]), residual);
+  });
+  Vectors& coarse = work.levels_[level + 1];
+  coarse.right.resize(levels_[level + 1].matrix.size());
+  for_rows(0, static_cast<Index>(coarse.right.size()), work.threads_, [&](Index a) {
+    Small sum(0);
+    for (Index m = here.member_begins[a]; m < here.member_begins[a + 1]; ++m) sum += rest[here.members[m]];
+    coarse.right[a] = sum;
+  });
   solve_level(level + 1, work, stage);
-  for (Index i = 0; i < size; ++i)
+  for_rows(0, last_color, work.threads_, [&](Index i) {
     if (here.aggregate[i] >= 0) solution[i] += times(here.phase[i], coarse.solution[here.aggregate[i]]);
-  for (Index i = size - 1; i >= 0; --i)
-    solution[i] = times(right[i] - row_sum(matrix, i, solution), here.inverse_diagonal[i]);
+  });
+  for (std::size_t c = here.colors.size() - 1; c-- > 0;)
+    for_rows(here.colors[c], here.colors[c + 1], work.threads_,
+             [&](Index i) { solution[i] = (right[i] - row_sum(matrix, i, solution)) * here.inverse_diagonal[i]; });
+}
+
+template <class Scalar>
+void MultigridSolver<Scalar>::solve_coarsest(const SmallVector& right, SmallVector& solution) const {
+  const std::vector<Index>& order = levels_.back().order;
+  const std::size_t size = order.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    Scalar sum(0);
+    for (std::size_t j = 0; j < size; ++j) sum += times(coarsest_[order[i] * size + order[j]], Scalar(right[j]));
+    solution[i] = Small(sum);
+  }
 }
 
 /// The K-cycle: one or two steps of conjugate gradients, each with a cycle of this level as its preconditioner.
@@ -300,81 +181,98 @@ void MultigridSolver<Scalar>::solve_level(std::size_t level, Workspace& work, co
   Vectors& v = work.levels_[level];
   if (level + 1 == levels_.size()) return cycle(level, v.right, v.solution, work, stage);
   const GraphMatrix<Small>& matrix = levels_[level].matrix;
+  const Index size = matrix.size();
   cycle(level, v.right, v.first, work, stage);
-  multiply(matrix, v.first, v.first_image);
-  const auto first_energy = std::real(dot(v.first, v.first_image));
+  v.first_image.resize(size);
+  const auto [energy_of_first, gain_of_first] =
+      sums_of_rows<std::array<Small, 2>>(size, work.threads_, [&](Index i, auto& sums) {
+        v.first_image[i] = row_product(matrix, i, v.first);
+        sums[0] += times(conjugate(v.first[i]), v.first_image[i]);
+        sums[1] += times(conjugate(v.first[i]), v.right[i]);
+      });
+  const float first_energy = std::real(energy_of_first);
   if (!(first_energy > 0)) {
     v.solution = v.first;
     return;
   }
-  const Small first_step = dot(v.first, v.right) / first_energy;
-  v.residual = v.right;
-  add(v.residual, -first_step, v.first_image);
-  v.solution.assign(v.right.size(), Small(0));
-  add(v.solution, first_step, v.first);
-  if (squared_norm(v.residual) <= k_enough * k_enough * squared_norm(v.right)) return;
+  const Small first_step = gain_of_first / first_energy;
+  v.residual.resize(size);
+  v.solution.resize(size);
+  const auto [left, whole] = sums_of_rows<std::array<double, 2>>(size, work.threads_, [&](Index i, auto& sums) {
+    v.residual[i] = v.right[i] - times(first_step, v.first_image[i]);
+    v.solution[i] = times(first_step, v.first[i]);
+    sums[0] += static_cast<double>(std::norm(v.residual[i]));
+    sums[1] += static_cast<double>(std::norm(v.right[i]));
+  });
+  if (left <= k_enough * k_enough * whole) return;
 
   cycle(level, v.residual, v.second, work, stage);
-  multiply(matrix, v.second, v.second_image);
-  const Small shared = dot(v.first_image, v.second);
-  const auto energy = std::real(dot(v.second, v.second_image)) - std::norm(shared) / first_energy;
+  const auto [energy_of_second, shared, gain_of_second] =
+      sums_of_rows<std::array<Small, 3>>(size, work.threads_, [&](Index i, auto& sums) {
+        const Small own = conjugate(v.second[i]);
+        sums[0] += times(own, row_product(matrix, i, v.second));
+        sums[1] += times(conjugate(v.first_image[i]), v.second[i]);
+        sums[2] += times(own, v.residual[i]);
+      });
+  const float energy = std::real(energy_of_second) - std::norm(shared) / first_energy;
   if (!(energy > 0)) return;
-  const Small second_step = dot(v.second, v.residual) / energy;
-  add(v.solution, second_step, v.second);
-  add(v.solution, times(-second_step, shared) / first_energy, v.first);
+  const Small second_step = gain_of_second / energy, first_part = times(-second_step, shared) / first_energy;
+  for_rows(0, size, work.threads_,
+           [&](Index i) { v.solution[i] += times(second_step, v.second[i]) + times(first_part, v.first[i]); });
 }
 
 template <class Scalar>
 void MultigridSolver<Scalar>::precondition(const std::vector<Scalar>& right, std::vector<Scalar>& result,
                                            Workspace& work, const JobStage& stage) const {
-  const double size = std::sqrt(squared_norm(right));
+  const double size = std::sqrt(squared_norm(right, work.threads_));
   const double scale = size > 0 ? 1 / size : 1;  // single precision has room around 1
+  const std::vector<Index>& order = levels_.front().order;
+  const auto count = static_cast<Index>(right.size());
   work.levels_.resize(levels_.size());
-  work.right_.resize(right.size());
-  for (std::size_t i = 0; i < right.size(); ++i) work.right_[i] = Small(right[i] * scale);
+  work.right_.resize(count);
+  for_rows(0, count, work.threads_, [&](Index i) { work.right_[i] = Small(right[order[i]] * scale); });
   cycle(0, work.right_, work.solution_, work, stage);
-  result.resize(right.size());
-  for (std::size_t i = 0; i < right.size(); ++i) result[i] = Scalar(work.solution_[i]) / scale;
+  result.resize(count);
+  for_rows(0, count, work.threads_, [&](Index i) { result[order[i]] = Scalar(work.solution_[i]) / scale; });
 }
 
 template <class Scalar>
 std::vector<Scalar> MultigridSolver<Scalar>::solve(const std::vector<Scalar>& right, std::vector<Scalar> guess,
-                                                   const Accuracy& accuracy, const JobStage& stage) const {
+                                                   const Accuracy& accuracy, const JobStage& stage, int threads) const {
+  threads = thread_count(threads);
   const Index size = matrix_.size();
   std::vector<Scalar> x = std::move(guess), residual = right, step, image(size, Scalar(0)), direction = image;
   if (x.empty()) {
     x.assign(size, Scalar(0));
   } else {
-    for (Index i = 0; i < size; ++i) residual[i] -= matrix_.diagonal[i] * x[i] + row_sum(matrix_, i, x);
+    for_rows(0, size, threads, [&](Index i) { residual[i] -= row_product(matrix_, i, x); });
   }
-  Workspace work;
-  const double enough = accuracy.residual * accuracy.residual * squared_norm(right), first = squared_norm(residual);
+  Workspace work(threads);
+  const double enough = accuracy.residual * accuracy.residual * squared_norm(right, threads);
+  const double first = squared_norm(residual, threads);
   double norm = first, energy = 1;
   for (int iteration = 0; iteration < accuracy.iterations && norm > enough; ++iteration) {
     if (first > enough) stage.update(std::log(first / norm) / std::log(first / enough));
     precondition(residual, step, work, stage);
     // Flexible: the preconditioner is not the same linear map each time, so that directions are made conjugate to the
     // last one in so many words.
-    Scalar shared(0), gain(0);
-    for (Index i = 0; i < size; ++i) {
-      shared += times(conjugate(image[i]), step[i]);
-      gain += times(conjugate(step[i]), residual[i]);
-    }
+    auto [shared, gain] = sums_of_rows<std::array<Scalar, 2>>(size, threads, [&](Index i, auto& sums) {
+      sums[0] += times(conjugate(image[i]), step[i]);
+      sums[1] += times(conjugate(step[i]), residual[i]);
+    });
     shared /= energy;
-    for (Index i = 0; i < size; ++i) direction[i] = step[i] - times(shared, direction[i]);
-    energy = 0;
-    for (Index i = 0; i < size; ++i) {
-      image[i] = matrix_.diagonal[i] * direction[i] + row_sum(matrix_, i, direction);
-      energy += std::real(times(conjugate(direction[i]), image[i]));
-    }
+    for_rows(0, size, threads, [&, last = shared](Index i) { direction[i] = step[i] - times(last, direction[i]); });
+    energy = sums_of_rows<std::array<double, 1>>(size, threads, [&](Index i, auto& sums) {
+      image[i] = row_product(matrix_, i, direction);
+      sums[0] += std::real(times(conjugate(direction[i]), image[i]));
+    })[0];
     if (!(energy > 0)) break;
     const Scalar length = gain / energy;
-    norm = 0;
-    for (Index i = 0; i < size; ++i) {
+    norm = sums_of_rows<std::array<double, 1>>(size, threads, [&](Index i, auto& sums) {
       x[i] += times(length, direction[i]);
       residual[i] -= times(length, image[i]);
-      norm += std::norm(residual[i]);
-    }
+      sums[0] += std::norm(residual[i]);
+    })[0];
   }
   stage.update(1);
   return x;

@@ -5,15 +5,16 @@
 
 #include "saddleback/job.h"
 
-#include "field/linear/graph_matrix.h"
+#include "field/linear/coarsening.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 
 /// Solves with one matrix, prepared once: pairwise aggregation twice a level, K-cycles in single precision as the
 /// preconditioner of flexible conjugate gradients in double precision [notay2010]. Of complex matrices the aggregates
 /// carry the phase by which neighbors are transported, so that connection Laplacians are coarsened as well as real
-/// ones. Scalar: double or std::complex<double>. Serial, so results do not depend on threads; any number of threads may
-/// solve at the same time.
+/// ones. Scalar: double or std::complex<double>. The smoother is Gauss-Seidel by colors, and sums are those of blocks,
+/// so that results do not depend on threads; any number of threads may solve at the same time.
 template <class Scalar>
 class MultigridSolver {
  public:
@@ -26,9 +27,10 @@ class MultigridSolver {
     double residual = 1e-9;  ///< relative to the right side, 2-norm
     int iterations = 300;    ///< the most of them; what is reached then is returned
   };
-  /// x with matrix x = right; starts from `guess` when it is not empty. About 20 iterations. \throw Cancelled.
+  /// x with matrix x = right; starts from `guess` when it is not empty. About 20 iterations, by several threads (0: all
+  /// cores). \throw Cancelled.
   std::vector<Scalar> solve(const std::vector<Scalar>& right, std::vector<Scalar> guess, const Accuracy& accuracy,
-                            const JobStage& stage) const;
+                            const JobStage& stage, int threads = 0) const;
 
   /// Room for cycles, used again from one to the next.
   class Workspace;
@@ -48,22 +50,27 @@ class MultigridSolver {
   using Small = typename Narrow<Scalar>::Type;
   using SmallVector = std::vector<Small>;
 
-  struct Level {
-    GraphMatrix<Small> matrix;   ///< in each row the columns before the diagonal come first
-    std::vector<Index> middles;  ///< where in each row the columns after the diagonal begin
-    SmallVector inverse_diagonal;
+  struct Level {                      ///< its nodes in the order of their colors
+    std::vector<Index> colors;        ///< where each begins, and where the last one ends
+    std::vector<Index> order, place;  ///< the node that is there, and where a node is
+    GraphMatrix<Small> matrix;        ///< in each row the columns before the diagonal come first
+    std::vector<Index> middles;       ///< where in each row the columns after the diagonal begin
+    std::vector<float> inverse_diagonal;
     std::vector<Index> aggregate;  ///< node of the next level; k_none for those that smoothing alone solves
     SmallVector phase;             ///< of the interpolation from there
+    std::vector<Index> member_begins, members;  ///< of each aggregate, without the last color's: no residual is there
   };
   struct Vectors {  ///< of one level during a cycle
-    SmallVector right, solution, residual, first, first_image, second, second_image;
+    SmallVector right, solution, residual, rest, first, first_image, second;
   };
 
   static Level make_level(const GraphMatrix<Scalar>& matrix, const JobStage& stage);
+  static void tie(Level& fine, const Level& coarse, const Aggregates<Scalar>& aggregates);
   void coarsen(const JobStage& stage);
   void factor_coarsest(const GraphMatrix<Scalar>& matrix);
   void cycle(std::size_t level, const SmallVector& right, SmallVector& solution, Workspace& work,
              const JobStage& stage) const;
+  void solve_coarsest(const SmallVector& right, SmallVector& solution) const;
   void solve_level(std::size_t level, Workspace& work, const JobStage& stage) const;
 
   GraphMatrix<Scalar> matrix_;
@@ -74,10 +81,11 @@ class MultigridSolver {
 template <class Scalar>
 class MultigridSolver<Scalar>::Workspace {
  public:
-  Workspace() = default;
+  explicit Workspace(int threads = 0) : threads_(thread_count(threads)) {}
 
  private:
   friend class MultigridSolver<Scalar>;
+  int threads_;
   std::vector<Vectors> levels_;
   SmallVector right_, solution_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "field/connection/filled_surface.h"
+#include "field/linear/row_blocks.h"
 #include "field/linear/spring_system.h"
 
 namespace saddleback {
@@ -52,8 +53,8 @@ void relax_faces(const Mesh& mesh, const SurfaceConnection& connection, const Fa
   std::vector<double> next = values;
   for (int round = 0; round < k_rounds; ++round) {
     stage.check();
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-      if (springs.stiffness[f] == k_fixed) continue;
+    for_rows(0, mesh.face_count(), 0, [&](Index f) {
+      if (springs.stiffness[f] == k_fixed) return;
       double sum = springs.stiffness[f] * springs.target[f], weight = springs.stiffness[f];
       for (Index h = 3 * f; h < 3 * f + 3; ++h) {
         if (mesh.twin(h) == k_none) continue;
@@ -61,7 +62,7 @@ void relax_faces(const Mesh& mesh, const SurfaceConnection& connection, const Fa
         weight += 1 / connection.weight[h];
       }
       if (weight > 0) next[f] = values[f] + k_damping * (sum / weight - values[f]);
-    }
+    });
     values.swap(next);
   }
 }
@@ -78,14 +79,32 @@ std::vector<GraphEdge<double>> vertex_graph(const Mesh& mesh, const SurfaceConne
   return result;
 }
 
-PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry, const JobStage& stage) {
-  PowerGraph result;
-  result.reserve(mesh.edge_count());
-  for (const Index h : inner_edges(mesh)) {
-    if (result.size() % 32768 == 0) stage.check();
-    const Complex carried = std::polar(1 / connection.weight[h], -symmetry * connection.transport[h]);
-    result.push_back({Mesh::face_of(h), Mesh::face_of(mesh.twin(h)), carried});
-  }
+GraphMatrix<Complex> power_matrix(const Mesh& mesh, const PowerGraph& graph, const std::vector<double>& stiffness) {
+  const Index count = mesh.face_count();
+  GraphMatrix<Complex> result;
+  result.begins.resize(count + 1);
+  result.diagonal.resize(count);
+  const auto joins_free = [&](Index f, Index h) {
+    return mesh.twin(h) != k_none && stiffness[f] != k_fixed && stiffness[Mesh::face_of(mesh.twin(h))] != k_fixed;
+  };
+  for_rows(0, count, 0, [&](Index f) {
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) result.begins[f + 1] += joins_free(f, h) ? 1 : 0;
+  });
+  for (Index f = 0; f < count; ++f) result.begins[f + 1] += result.begins[f];
+  result.columns.resize(result.begins.back());
+  result.values.resize(result.begins.back());
+  for_rows(0, count, 0, [&](Index f) {
+    const bool is_fixed = stiffness[f] == k_fixed;
+    Index at = result.begins[f];
+    double diagonal = is_fixed ? 1 : stiffness[f];
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      if (!is_fixed && mesh.twin(h) != k_none) diagonal += 1 / graph.connection.weight[h];
+      if (!joins_free(f, h)) continue;
+      result.columns[at] = Mesh::face_of(mesh.twin(h));
+      result.values[at++] = -graph.tie(h);
+    }
+    result.diagonal[f] = diagonal;
+  });
   return result;
 }
 
@@ -98,11 +117,19 @@ std::vector<Complex> relax_powers(const Mesh& mesh, const PowerGraph& graph, con
     is_held[component(mesh, f)] = true;
     stiffness[f] = 1;
   }
-  SpringSystem<Complex> system = spring_system(graph, stiffness, springs.target);
-  const MultigridSolver<Complex> solver(std::move(system.matrix), stage.part(0, 0.2));
-  std::vector<Complex> result = solver.solve(system.right, {}, accuracy, stage.part(0.2, 1));
-  for (Index f = 0; f < mesh.face_count(); ++f)
+  const MultigridSolver<Complex> solver(power_matrix(mesh, graph, stiffness), stage.part(0, 0.2));
+  std::vector<Complex> right(mesh.face_count());
+  for_rows(0, mesh.face_count(), 0, [&](Index f) {
+    const bool is_fixed = stiffness[f] == k_fixed;
+    right[f] = (is_fixed ? 1 : stiffness[f]) * springs.target[f];
+    for (Index h = 3 * f; h < 3 * f + 3 && !is_fixed; ++h)
+      if (const Index twin = mesh.twin(h); twin != k_none && stiffness[Mesh::face_of(twin)] == k_fixed)
+        right[f] += times(graph.tie(h), springs.target[Mesh::face_of(twin)]);
+  });
+  std::vector<Complex> result = solver.solve(right, {}, accuracy, stage.part(0.2, 1));
+  for_rows(0, mesh.face_count(), 0, [&](Index f) {
     if (springs.stiffness[f] == k_fixed) result[f] = springs.target[f];
+  });
   return result;
 }
 

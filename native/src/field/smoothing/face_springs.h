@@ -10,7 +10,17 @@
 
 namespace saddleback {
 
-using PowerGraph = std::vector<GraphEdge<std::complex<double>>>;
+/// The dual graph for powers of directions: neighbors are tied by the inverse of the weight, as the energy of turning
+/// has it, and carried across `symmetry` times.
+struct PowerGraph {
+  const SurfaceConnection& connection;
+  int symmetry;
+
+  /// Returns what the value beyond a half-edge adds to that of its face.
+  std::complex<double> tie(Index h) const {
+    return std::polar(1 / connection.weight[h], -symmetry * connection.transport[h]);
+  }
+};
 
 /// Stiffness of what is drawn softly with weight 1 all through a face, against about that of the usual tie to each
 /// neighbor: fields meet it to within a degree or two.
@@ -27,9 +37,9 @@ struct FaceSprings {
 /// The edges between vertices, tied by the weight.
 std::vector<GraphEdge<double>> vertex_graph(const Mesh& mesh, const SurfaceConnection& connection);
 
-/// The edges of the dual graph for powers of directions: neighbors are tied by the inverse of the weight, as the
-/// energy of turning has it, and carried across `symmetry` times.
-PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry, const JobStage& stage);
+/// The graph's Laplacian and, in the diagonal, the stiffness; faces of stiffness k_fixed are apart.
+GraphMatrix<std::complex<double>> power_matrix(const Mesh& mesh, const PowerGraph& graph,
+                                               const std::vector<double>& stiffness);
 
 /// The equilibrium of powers. Components without springs are held at 0 in their smallest face.
 std::vector<std::complex<double>> relax_powers(const Mesh& mesh, const PowerGraph& graph,

@@ -128,8 +128,7 @@ std::vector<double> turns_towards(const Mesh& mesh, const SurfaceConnection& con
   }
   SurfaceConnection flat = connection;  // what the field turns by has no frame to be carried in
   std::ranges::fill(flat.transport, 0.0);
-  const std::vector<Complex> powers =
-      relax_powers(mesh, power_graph(mesh, flat, symmetry, stage), relative, accuracy, stage);
+  const std::vector<Complex> powers = relax_powers(mesh, {flat, symmetry}, relative, accuracy, stage);
   return followed_angles(mesh, symmetry, powers, stage);
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <memory>
 
+#include "field/linear/row_blocks.h"
+
 namespace saddleback {
 namespace {
 
@@ -31,15 +33,18 @@ struct Pair {
 class Minimizer {
  public:
   Minimizer(const Mesh& mesh, const PowerGraph& graph, const JobStage& stage)
-      : mesh_(mesh), matrix_(graph_laplacian(mesh.face_count(), graph)), components_(mesh.component_count()) {
+      : mesh_(mesh),
+        matrix_(power_matrix(mesh, graph, std::vector<double>(mesh.face_count(), 0.0))),
+        components_(mesh.component_count()) {
     std::vector<double> area(components_, 0.0);
     for (Index f = 0; f < mesh.face_count(); ++f) area[component(f)] += mesh.face_area(f);
     GraphMatrix<Complex> shifted = matrix_;
     mass_.resize(mesh.face_count());
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for_faces([&](Index f) {
       mass_[f] = mesh.face_area(f) / area[component(f)];
       shifted.diagonal[f] += k_shift * mass_[f];
-    }
+    });
+    list_stretches();
     solver_ = std::make_unique<Solver>(std::move(shifted), stage);
     energy_.assign(components_, 0.0);
   }
@@ -48,17 +53,15 @@ class Minimizer {
   void minimize(Vector start, const JobStage& stage) {
     Solver::Workspace work;
     Vector right(start.size());
-    for (std::size_t f = 0; f < start.size(); ++f) right[f] = mass_[f] * start[f];
+    for_faces([&](Index f) { right[f] = mass_[f] * start[f]; });
     solver_->precondition(right, current_.value, work, stage);
-    multiply(matrix_, current_.value, current_.image);
+    take_image(current_);
     normalize();
     for (int step = 0; step < k_steps; ++step) {
       stage.update(static_cast<double>(step) / k_steps);
-      Vector residual = current_.image;
-      for (std::size_t f = 0; f < residual.size(); ++f)
-        residual[f] -= energy_[component(static_cast<Index>(f))] * mass_[f] * current_.value[f];
-      solver_->precondition(residual, search_.value, work, stage);
-      multiply(matrix_, search_.value, search_.image);
+      for_faces([&](Index f) { right[f] = current_.image[f] - energy_[component(f)] * mass_[f] * current_.value[f]; });
+      solver_->precondition(right, search_.value, work, stage);
+      take_image(search_);
       if (improve(step > 0) < k_settled) break;
     }
   }
@@ -70,19 +73,19 @@ class Minimizer {
     solver_.reset();
     GraphMatrix<Complex> diffusion = matrix_;
     std::vector<double> share(mass_.size());
-    for (Index f = 0; f < mesh_.face_count(); ++f) {
+    for_faces([&](Index f) {
       share[f] = std::max(energy_[component(f)], 1.0) * mass_[f];
       diffusion.diagonal[f] += share[f];
-    }
+    });
     const Solver solver(std::move(diffusion), stage.part(0, 0.1));
     Vector result = std::move(current_.value);
     for (int round = 0; round < k_rounds; ++round) {
       Vector right(result.size());
-      for (std::size_t f = 0; f < right.size(); ++f) {
+      for_faces([&](Index f) {
         const double size = std::abs(result[f]);
-        right[f] = result[f] *= size > 0 ? 1 / size : 0;
-        right[f] *= share[f];
-      }
+        result[f] *= size > 0 ? 1 / size : 0;
+        right[f] = share[f] * result[f];
+      });
       const JobStage part = stage.part(0.1 + 0.45 * round, 0.55 + 0.45 * round);
       result = solver.solve(right, std::move(result), k_accuracy, part);
     }
@@ -92,34 +95,68 @@ class Minimizer {
  private:
   struct Sums {
     std::array<std::array<Complex, 3>, 3> energy{}, mass{};
+
+    void operator+=(const Sums& other) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j) energy[i][j] += other.energy[i][j], mass[i][j] += other.mass[i][j];
+    }
   };
 
   Index component(Index face) const { return mesh_.component_of(mesh_.triangles()[face][0]); }
 
+  template <class Body>
+  void for_faces(Body&& body) const {
+    for_rows(0, mesh_.face_count(), 0, body);
+  }
+
+  void take_image(Pair& pair) const {
+    pair.image.resize(pair.value.size());
+    for_faces([&](Index f) { pair.image[f] = row_product(matrix_, f, pair.value); });
+  }
+
+  /// Lists the faces by component, and where among them stretches of one component begin whose sums one thread makes.
+  void list_stretches() {
+    constexpr Index k_stretch = 4096;
+    std::vector<Index> begins(components_ + 1, 0);
+    for (Index f = 0; f < mesh_.face_count(); ++f) ++begins[component(f) + 1];
+    for (Index c = 0; c < components_; ++c) {
+      for (Index begin = 0; begin < begins[c + 1]; begin += k_stretch) stretches_.push_back(begins[c] + begin);
+      begins[c + 1] += begins[c];
+    }
+    stretches_.push_back(mesh_.face_count());
+    faces_.resize(mesh_.face_count());
+    for (Index f = 0; f < mesh_.face_count(); ++f) faces_[begins[component(f)]++] = f;
+  }
+
   /// Returns the products of the first `count` of current, search and last.
   std::vector<Sums> all_products(int count) const {
     const std::array<const Pair*, 3> vectors{&current_, &search_, &last_};
-    std::vector<Sums> result(components_);
-    for (Index f = 0; f < mesh_.face_count(); ++f) {
-      Sums& sums = result[component(f)];
-      for (int i = 0; i < count; ++i) {
-        const Complex left = std::conj(vectors[i]->value[f]);
-        for (int j = i; j < count; ++j) {
-          sums.energy[i][j] += times(left, vectors[j]->image[f]);
-          sums.mass[i][j] += mass_[f] * times(left, vectors[j]->value[f]);
+    std::vector<Sums> parts(stretches_.size() - 1), result(components_);
+    parallel_for(static_cast<Index>(parts.size()), 0, 1, [&](Index stretch, int) {
+      Sums sums;
+      for (Index place = stretches_[stretch]; place < stretches_[stretch + 1]; ++place) {
+        const Index f = faces_[place];
+        for (int i = 0; i < count; ++i) {
+          const Complex left = std::conj(vectors[i]->value[f]);
+          for (int j = i; j < count; ++j) {
+            sums.energy[i][j] += times(left, vectors[j]->image[f]);
+            sums.mass[i][j] += mass_[f] * times(left, vectors[j]->value[f]);
+          }
         }
       }
-    }
+      parts[stretch] = sums;
+    });
+    for (std::size_t s = 0; s < parts.size(); ++s) result[component(faces_[stretches_[s]])] += parts[s];
     return result;
   }
 
   void normalize() {
     const std::vector<Sums> sums = all_products(1);
-    for (Index f = 0; f < mesh_.face_count(); ++f) {
+    for_faces([&](Index f) {
       const double scale = 1 / std::sqrt(std::real(sums[component(f)].mass[0][0]));
       current_.value[f] *= scale;
       current_.image[f] *= scale;
-    }
+    });
     for (Index c = 0; c < components_; ++c)
       energy_[c] = std::real(sums[c].energy[0][0]) / std::real(sums[c].mass[0][0]);
   }
@@ -163,13 +200,13 @@ class Minimizer {
       last_.value.assign(mass_.size(), Complex(0));
       last_.image = last_.value;
     }
-    for (Index f = 0; f < mesh_.face_count(); ++f) {
+    for_faces([&](Index f) {
       const auto& factor = factors[component(f)];
       last_.value[f] = times(factor[1], search_.value[f]) + times(factor[2], last_.value[f]);
       last_.image[f] = times(factor[1], search_.image[f]) + times(factor[2], last_.image[f]);
       current_.value[f] = times(factor[0], current_.value[f]) + last_.value[f];
       current_.image[f] = times(factor[0], current_.image[f]) + last_.image[f];
-    }
+    });
     const std::vector<double> before = energy_;
     normalize();
     double gain = 0;
@@ -183,6 +220,7 @@ class Minimizer {
   GraphMatrix<Complex> matrix_;
   Index components_;
   std::vector<double> mass_;
+  std::vector<Index> faces_, stretches_;  // see list_stretches
   std::unique_ptr<Solver> solver_;
   std::vector<double> energy_;
   Pair current_, search_, last_;
