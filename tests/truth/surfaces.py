@@ -435,6 +435,58 @@ def cells_without_places(rng: Random) -> None:
     assert missed <= 1e-5 * spread, f"a center is {missed} away, its points {spread}"
 
 
+@guards("centroidal_voronoi", "SurfaceCurve", on="nothing")
+def sites_on_curves_without_places(rng: Random) -> None:
+    """Held sites of a surface elsewhere begin at the nearest points of their curves, and slide as on the surface."""
+    mesh = rough(rng)
+    moved = elsewhere(mesh, rng)
+    ends = some_points(mesh, 2, rng)
+    way = sb.ExactField(mesh, ends[:1]).path(ends[1:]).surface
+    here, there = sb.SurfaceCurve(mesh, way), sb.SurfaceCurve(moved, way)
+    graphs = [sb.SaddleVertexGraph(m, exact=True, threads=1) for m in (mesh, moved)]
+    held = np.repeat(np.array([0, -1], dtype=np.int32), [4, 16])
+    sites = some_points(mesh, len(held), rng)
+    options = {"held": held, "method": "lloyd", "threads": 1}
+    start = sb.centroidal_voronoi(graphs[1], sites=sites, curves=[there], max_iterations=0, **options)
+    along = along_curve(mesh, way, 200)
+    for i in np.flatnonzero(held == 0):
+        field, found = sb.ExactField(mesh, sites[i]), start.sites[i]
+        least = field.distance_to(along).min()
+        assert field.distance_to(found)[0] <= least * (1 + 1e-9), f"site {i} begins farther away than need be"
+        assert sb.ExactField(mesh, found).distance_to(along).min() <= here.length / 200, f"site {i} is not on the curve"
+    first, second = (
+        sb.centroidal_voronoi(graph, sites=start.sites, curves=[curve], max_iterations=2, **options)
+        for graph, curve in zip(graphs, (here, there), strict=True)
+    )
+    assert np.allclose(first.energy, second.energy, rtol=1e-4), f"energies {first.energy} and {second.energy}"
+    missed = np.linalg.norm(first.sites.positions(mesh) - second.sites.positions(mesh), axis=1)[held == 0].max()
+    assert missed <= 1e-3 * mesh.mean_edge_length, f"held sites are {missed} apart"
+
+
+def along_curve(mesh: sb.Mesh, way: sb.SurfacePoints, count: int) -> sb.SurfacePoints:
+    """So many points of each step of a curve, its points among them."""
+    faces, weights = [], []
+    for a, b in zip(range(len(way) - 1), range(1, len(way)), strict=True):
+        for face in np.flatnonzero(np.isin(mesh.triangles, mesh.triangles[way.faces[a]]).any(axis=1)):
+            one, other = (weights_in(mesh, way, i, int(face)) for i in (a, b))
+            if one is not None and other is not None:
+                share = np.linspace(0, 1, count)[:, None]
+                faces.append(np.full(count, face, dtype=np.int32))
+                weights.append((1 - share) * one + share * other)
+                break
+    return sb.SurfacePoints(np.concatenate(faces), np.concatenate(weights))
+
+
+def weights_in(mesh: sb.Mesh, points: sb.SurfacePoints, i: int, face: int) -> Floats | None:
+    """A point's weights in a face that it lies on; None where it does not."""
+    corners, weights = mesh.triangles[points.faces[i]].tolist(), points.barycentric[i]
+    own = mesh.triangles[face].tolist()
+    if any(weight > 1e-12 and corner not in own for corner, weight in zip(corners, weights, strict=True)):
+        return None
+    found = np.array([weights[corners.index(corner)] if corner in corners else 0.0 for corner in own])
+    return np.asarray(found / found.sum())
+
+
 @guards("direction_field", "streamline", on="nothing")
 def fields_without_places(rng: Random) -> None:
     """A field along a curve, and a line along it, of a surface elsewhere against those of the surface itself."""

@@ -34,11 +34,6 @@ def measured(request: TessellateRequest, mesh: Any, progress: Progress, cache: C
             f"'{surface.name}': cells are stretched along the field or follow curvature, not both; set Stretch to 1, "
             "or Follow Curvature to 0"
         )
-    if settings.hold_sharp or settings.hold_boundary or request.marked_edges is not None:
-        raise BadInputError(
-            f"'{surface.name}': cells that are stretched or follow curvature cannot be kept on lines, nor mirrored; "
-            "set Stretch to 1 and Follow Curvature to 0, or switch Keep and X Mirror off"
-        )
     if request.field is None:
         name, lengths = f"bent {settings.follow_curvature}", partial(_bent, mesh, settings.follow_curvature)
     else:

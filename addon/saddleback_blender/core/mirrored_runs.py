@@ -56,6 +56,7 @@ def halved(request: TessellateRequest, mirror: Mirror) -> TessellateRequest:
     return replace(
         request,
         surface=mirror.half,
+        field=None if request.field is None else replace(request.field, surface=mirror.half),
         sites=sites,
         settings=replace(settings, hold_marked=True),
         marked_edges=marked,

@@ -228,6 +228,12 @@ def _held(request: TessellateRequest) -> tuple[object, ...]:
     return (settings.hold_sharp and settings.sharp_angle, settings.hold_boundary, request.marked_edges)
 
 
+def _lines(request: TessellateRequest, mesh: Any, metric: Any) -> list[Any]:
+    """Curves to stay on: found by the shape in space, on the mesh by which cells are measured."""
+    lines = feature_lines(request.surface, mesh, request.settings, request.marked_edges)
+    return [native.load().SurfaceCurve(metric, line.points, line.closed) for line in lines]
+
+
 def _starts(request: TessellateRequest) -> int:
     """Returns how many relaxations to choose from: one of sites that are given, or that is watched, is the only one."""
     settings = request.settings
@@ -262,8 +268,7 @@ def _solve(
     if points is None or iterations:
         choice: dict[str, Any] = {"sites": points}
         if points is None:
-            curves = feature_lines(request.surface, mesh, settings, request.marked_edges)
-            choice = {"count": settings.count, "curves": curves or None}
+            choice = {"count": settings.count, "curves": _lines(request, mesh, graph.mesh) or None}
         live, is_newer = request.live, True
         with nullcontext() if live is None else live.follow(graph) as watch:
             while is_newer:
@@ -406,7 +411,7 @@ def _dual(
         made = dual_of(solved.cells, policy, request.threads, progress, has_look)
         if not settings.make_dual:
             return made.dual
-        lines = feature_lines(surface, mesh, settings, request.marked_edges) if has_quads else None
+        lines = _lines(request, mesh, measured(request, mesh, progress, cache)[1]) if has_quads else None
         return finished(made, mesh, surface, marks, lines)
 
     extra: tuple[object, ...] = (has_quads, *_held(request)) if settings.make_dual else ()

@@ -91,9 +91,10 @@ void show_cells(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& 
 CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
                                   const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr int k_first_iterations = 10, k_most_rounds = 5;
+  constexpr double k_start = 0.05;  // of the first round, told as a part of it
   const Mesh& mesh = graph.mesh();
   const HeldSites checked(mesh, options.constraints.curves, {}, 0);
-  HeldStart start = held_start(mesh, count, options.constraints.curves, options.density, seed);
+  HeldStart start = held_start(mesh, count, options.constraints.curves, options.density, seed, stage.part(0, k_start));
   std::vector<Index> fixed(options.constraints.fixed.begin(), options.constraints.fixed.end());
   fixed.insert(fixed.end(), start.fixed.begin(), start.fixed.end());
   CentroidalVoronoiOptions on_curves = options;

@@ -68,23 +68,45 @@ def test_without_stretch_the_field_does_not_matter():
     assert np.array_equal(before, attribute(item, "saddleback_cell"))
 
 
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        ({"hold_boundary": True}, "cells that are stretched or follow curvature cannot be kept on lines"),
-        ({"hold_sharp": True}, "cells that are stretched or follow curvature cannot be kept on lines"),
-        ({"mirror_x": True}, "cells that are stretched or follow curvature cannot be kept on lines, nor mirrored"),
-        ({}, "its direction field has crosses, along which of two lines shall cells be long"),
-    ],
-)
-def test_what_cannot_be_stretched_is_told(options, says):
+def test_a_field_of_crosses_cannot_stretch():
     vertices, faces = grid_arrays(12)
     item = add_object("Plate", vertices - (0.5, 0.5, 0), faces)
-    item.saddleback.direction_field.symmetry = "2" if options else "4"
+    item.saddleback.direction_field.symmetry = "4"
     before = fingerprint()
-    with pytest.raises(RuntimeError, match=says):
-        bpy.ops.saddleback.tessellate(stretch=2.0, **options, **QUICK)
+    with pytest.raises(
+        RuntimeError, match="its direction field has crosses, along which of two lines shall cells be long"
+    ):
+        bpy.ops.saddleback.tessellate(stretch=2.0, **QUICK)
     assert fingerprint() == before
+
+
+def dual_of(item):
+    return next(child for child in item.children if child["saddleback_role"] == "dual").data
+
+
+@pytest.mark.parametrize("options", [{"stretch": 2.0}, {"follow_curvature": 0.5}])
+@pytest.mark.parametrize("faces", ["TRIANGLES", "QUADS"])
+def test_kept_lines_are_kept_by_any_metric(options, faces):
+    """The remesh of a plate reaches all of its border, corners too."""
+    vertices, polygons = grid_arrays(30)
+    item = add_object("Plate", vertices, polygons)
+    kept = {"hold_boundary": True, "hold_sharp": True, "make_dual": True, "dual_faces": faces}
+    assert bpy.ops.saddleback.tessellate(**options, **kept, **QUICK) == {"FINISHED"}
+    whole, found = mesh_of(item.data), mesh_of(dual_of(item))
+    assert found.area == pytest.approx(whole.area, rel=1e-5)
+
+
+def test_stretched_cells_can_be_mirrored():
+    vertices, polygons = grid_arrays(30)
+    item = add_object("Plate", vertices - (0.5, 0.5, 0), polygons)
+    item.saddleback.direction_field.symmetry = "2"
+    made = bpy.ops.saddleback.tessellate(stretch=2.0, mirror_x=True, hold_boundary=True, make_dual=True, **QUICK)
+    assert made == {"FINISHED"}
+    places = positions(dual_of(item))
+    mirrored = places * [-1, 1, 1]
+    gaps = np.linalg.norm(places[:, None] - mirrored, axis=2).min(axis=1)
+    assert gaps.max() < 1e-6
+    assert (abs(places[:, 0]) < 1e-6).any()
 
 
 def test_cells_that_follow_curvature_are_small_where_it_bends():

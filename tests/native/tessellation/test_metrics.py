@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -230,6 +232,50 @@ def test_of_sites_at_one_place_the_first_has_the_exact_cell():
         areas = exact_cells(surface, sites).areas
         assert areas[1] == 0
         assert areas[[0, 2]].min() > 0.1 * mesh.area
+
+
+def rim(mesh: sb.Mesh, places: np.ndarray) -> list[sb.SurfaceCurve]:
+    """The sides of the unit square, whose vertices are at `places`, as curves on a mesh of the same triangles."""
+    loop = mesh.boundary_loops[0]
+    corners = np.flatnonzero(np.isin(places[loop, :2], [0, 1]).all(axis=1))
+    loop, corners = np.roll(loop, -corners[0]), corners - corners[0]
+    ends = [*corners, len(loop)]
+    return [sb.SurfaceCurve(mesh, np.append(loop, loop[0])[a : b + 1]) for a, b in pairwise(ends)]
+
+
+@pytest.mark.parametrize("method", ["lbfgs", "lloyd"])
+def test_sites_on_curves_slide_by_lengths_as_in_the_plane(method):
+    vertices, triangles = meshes.grid(30, 30, jitter=0.3)
+    plane = sb.Mesh(vertices, triangles)
+    own = sb.Mesh(vertices, triangles, lengths=plane.edge_lengths)
+    options = {"count": 90, "max_iterations": 25, "method": method}
+    found = []
+    for mesh in (plane, own, shown_nowhere(plane)):
+        relaxed = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh), curves=rim(mesh, vertices), **options)
+        places = relaxed.sites.positions(plane)[:, :2]
+        on_rim = np.isin(places, [0, 1]).any(axis=1)
+        np.testing.assert_array_equal(on_rim, relaxed.held >= 0)
+        assert np.isin(places, [0, 1]).all(axis=1).sum() == 4
+        assert (np.diff(relaxed.energy) <= 0).all()
+        assert not relaxed.cells.dual("strict").issues
+        found.append(relaxed)
+    np.testing.assert_array_equal(found[0].held, found[1].held)
+    np.testing.assert_allclose(found[1].sites.positions(plane), found[0].sites.positions(plane), atol=1e-9)
+    assert found[2].normalized_energy == pytest.approx(found[0].normalized_energy, rel=0.05)
+
+
+def test_held_sites_begin_at_their_feet_by_lengths():
+    vertices, triangles = meshes.grid(20, 20)
+    plane = sb.Mesh(vertices, triangles)
+    row = np.flatnonzero(abs(vertices[:, 1] - vertices[:, 1][np.argmin(abs(vertices[:, 1] - 0.5))]) < 1e-12)
+    row = row[np.argsort(vertices[row, 0])]
+    mesh, sites = shown_nowhere(plane), random_points(plane, 20, seed=3)
+    relaxed = sb.centroidal_voronoi(
+        sb.SaddleVertexGraph(mesh), sites=sites, curves=[sb.SurfaceCurve(mesh, row)], held=[0] * 20, max_iterations=0
+    )
+    feet = sites.positions(plane)
+    feet[:, 1] = vertices[row[0], 1]
+    np.testing.assert_allclose(relaxed.sites.positions(plane), feet, atol=1e-7)
 
 
 def test_a_mesh_with_lengths_of_its_own_is_refused():

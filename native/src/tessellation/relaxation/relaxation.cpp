@@ -16,7 +16,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
       held_(graph.mesh(), options.constraints.curves, options.constraints.held, sites.size()) {
   for (const Index site : options.constraints.fixed) is_fixed_[site] = 1;
   SurfacePoints start = sites;
-  std::vector<double> along = held_.bring(start);
+  std::vector<double> along = held_.bring(start, stage);
   cells_->match(start);
   state_ = evaluate(std::move(start), std::move(along), stage);
   while (revive_empty_cells(stage)) {}

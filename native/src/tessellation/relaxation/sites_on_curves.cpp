@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "saddleback/error.h"
+#include "saddleback/geodesics/exact_distances.h"
 #include "saddleback/mesh/sample.h"
 
 namespace saddleback {
@@ -28,6 +29,79 @@ double nearest_along(const SurfaceCurve& curve, const Vec3& place) {
     if (squared < least) least = squared, along = segment.start + share * segment.length;
   }
   return along;
+}
+
+/// A point of the plane as seen along a segment: how far along it its foot is, and the square of how far that is away.
+struct Foot {
+  double share, squared;
+};
+
+Foot foot_of(const Vec2& place, const Vec2& begin, const Vec2& end) {
+  const Vec2 step = end - begin;
+  const double share = std::clamp((place - begin).dot(step) / step.squaredNorm(), 0.0, 1.0);
+  return {share, (begin + share * step - place).squaredNorm()};
+}
+
+/// The curve's point that is nearest to a site, as far as was looked.
+struct NearestOnCurve {
+  double distance = std::numeric_limits<double>::infinity(), along = 0;
+  void take(const CurveSegment& segment, double share, double other) {
+    if (other < distance) *this = {other, segment.start + share * segment.length};
+  }
+};
+
+/// Looks in the faces that the site lies on; infinitely far where the curve passes none. In edges of the face.
+NearestOnCurve nearest_in_faces(const SurfaceCurve& curve, const SurfacePoint& site) {
+  NearestOnCurve nearest;
+  for (const CurveSegment& segment : curve.segments()) {
+    const std::optional<Vec3> inside = barycentric_in(curve.mesh(), site, segment.face, k_barycentric_tolerance);
+    if (!inside) continue;
+    const FaceChart chart(curve.mesh(), segment.face);
+    const Foot foot = foot_of(chart.to_plane(*inside), chart.to_plane(segment.begin), chart.to_plane(segment.end));
+    nearest.take(segment, foot.share, std::sqrt(foot.squared) / curve.mesh().length(3 * segment.face));
+  }
+  return nearest;
+}
+
+/// Looks from a segment along the ways to the site, whose feet are where they are shortest. Ways change as they pass
+/// other vertices, so halves are looked at as well, where by the distances at their ends the site may be nearer.
+void look_from(const CurveSegment& segment, const ExactField& field, NearestOnCurve& nearest) {
+  constexpr double k_finest = 1.0 / 4096;  // of the segment
+  struct Part {
+    double begin, end, at_begin, at_end;  // shares, and the distances there
+  };
+  const auto at = [&](double share) {
+    return SurfacePoint{segment.face, (1 - share) * segment.begin + share * segment.end};
+  };
+  const auto take = [&](double share) {
+    const double distance = field.nearest_at(at(share)).distance;
+    nearest.take(segment, share, distance);
+    return distance;
+  };
+  std::vector<ExactField::Way> ways;
+  std::vector<Part> parts{{0, 1, take(0), take(1)}};
+  while (!parts.empty()) {
+    const Part part = parts.back();
+    parts.pop_back();
+    const double width = part.end - part.begin, least = (part.at_begin + part.at_end - width * segment.length) / 2;
+    if (width < k_finest || !(least < nearest.distance)) continue;
+    const double middle = part.begin + width / 2, at_middle = take(middle);
+    field.ways_at(at(middle), ways);
+    take(foot_of(ways.front().image, field.place_of(at(0)), field.place_of(at(1))).share);
+    parts.push_back({part.begin, middle, part.at_begin, at_middle});
+    parts.push_back({middle, part.end, at_middle, part.at_end});
+  }
+}
+
+/// Arc length of the curve's point that is nearest along the surface, of a mesh that its places do not show.
+double nearest_along_surface(const SurfaceCurve& curve, const SurfacePoint& site, const JobStage& stage) {
+  constexpr double k_on_curve = 1e-9;
+  NearestOnCurve nearest = nearest_in_faces(curve, site);
+  if (nearest.distance <= k_on_curve) return nearest.along;
+  nearest = {};
+  const ExactField field(curve.mesh(), {site}, stage);
+  for (const CurveSegment& segment : curve.segments()) look_from(segment, field, nearest);
+  return nearest.along;
 }
 
 /// Round a closed curve; up to the ends of an open one.
@@ -56,7 +130,6 @@ SurfacePoint point_on(const CurveSegment& segment, double along) {
 HeldSites::HeldSites(const Mesh& mesh, std::span<const SurfaceCurve* const> curves, std::span<const Index> held,
                      std::size_t site_count)
     : mesh_(mesh), curves_(curves) {
-  if (!curves.empty()) mesh.require_space("curves");
   for (std::size_t i = 0; i < curves.size(); ++i)
     if (&curves[i]->mesh() != &mesh) throw InputError(message("curves: curve ", i, " lies on another mesh"));
   if (held.empty()) return;
@@ -79,12 +152,13 @@ HeldSites::Place HeldSites::place_at(const SurfaceCurve& curve, double along) co
   return {point, tangent_heading(mesh_, point, std::atan2(step.y(), step.x()))};
 }
 
-std::vector<double> HeldSites::bring(SurfacePoints& sites) const {
+std::vector<double> HeldSites::bring(SurfacePoints& sites, const JobStage& stage) const {
   std::vector<double> along(any() ? sites.size() : 0);
   for (std::size_t i = 0; i < along.size(); ++i) {
     if (!is_held(i)) continue;
     const SurfaceCurve& curve = *curves_[curve_of_[i]];
-    along[i] = nearest_along(curve, position(mesh_, sites[i]));
+    along[i] = mesh_.is_intrinsic() ? nearest_along_surface(curve, sites[i], stage.part(0, 0))
+                                    : nearest_along(curve, position(mesh_, sites[i]));
     sites[i] = place_at(curve, along[i]).point;
   }
   return along;
@@ -145,18 +219,29 @@ double along_at(const SurfaceCurve& curve, const std::vector<double>& sums, doub
   return segment.start + segment.length * (sum - sums[i]) / (sums[i + 1] - sums[i]);
 }
 
-/// Each site takes the place of a point: those nearest to any site are left out, but none that its part has no other
-/// instead of. \throw InputError where that leaves too many.
-SurfacePoints away_from(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points) {
+/// How far points are from the nearest site: squared, in space; along the surface where that does not show it.
+std::vector<double> ranks_by_distance(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points,
+                                      const JobStage& stage) {
+  if (mesh.is_intrinsic()) return ExactField(mesh, sites, stage).distance_to(points);
   std::vector<Vec3> places;
   for (const SurfacePoint& site : sites) places.push_back(position(mesh, site));
-  std::vector<std::pair<double, Index>> nearest;
-  for (Index i = 0; i < static_cast<Index>(points.size()); ++i) {
-    const Vec3 place = position(mesh, points[i]);
+  std::vector<double> ranks;
+  for (const SurfacePoint& point : points) {
+    const Vec3 place = position(mesh, point);
     double least = std::numeric_limits<double>::infinity();
     for (const Vec3& site : places) least = std::min(least, (site - place).squaredNorm());
-    nearest.emplace_back(least, i);
+    ranks.push_back(least);
   }
+  return ranks;
+}
+
+/// Each site takes the place of a point: those nearest to any site are left out, but none that its part has no other
+/// instead of. \throw InputError where that leaves too many.
+SurfacePoints away_from(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points,
+                        const JobStage& stage) {
+  const std::vector<double> ranks = ranks_by_distance(mesh, sites, points, stage);
+  std::vector<std::pair<double, Index>> nearest;
+  for (Index i = 0; i < static_cast<Index>(points.size()); ++i) nearest.emplace_back(ranks[i], i);
   std::ranges::sort(nearest);
   const auto part_of = [&](const SurfacePoint& point) { return mesh.component_of(mesh.triangles()[point.face][0]); };
   std::vector<Index> in_part(mesh.component_count(), 0);
@@ -230,9 +315,9 @@ class CurveEnds {
   Index number(const Mesh& mesh, const SurfaceCurve& curve, bool is_last) {
     constexpr double k_same = 1e-9;  // relative to the curve
     const double along = is_last ? curve.length() : 0;
-    const Vec3 place = position(mesh, point_on(segment_at(curve, along), along));
+    const SurfacePoint place = point_on(segment_at(curve, along), along);
     const auto same = std::ranges::find_if(
-        places_, [&](const Vec3& other) { return (other - place).norm() <= k_same * curve.length(); });
+        places_, [&](const SurfacePoint& other) { return step_length(mesh, place, other) <= k_same * curve.length(); });
     const auto found = static_cast<Index>(same - places_.begin());
     if (same == places_.end()) places_.push_back(place);
     return found;
@@ -258,7 +343,7 @@ class CurveEnds {
   }
 
   std::vector<Index> ends_;  ///< by curve, first and last; k_none of closed ones
-  std::vector<Vec3> places_;
+  SurfacePoints places_;
   std::vector<std::vector<std::pair<Index, double>>> near_;  ///< ends along short curves, and how far
   std::vector<double> distance_;                             ///< of a search
   std::vector<std::uint8_t> is_kept_;
@@ -267,7 +352,7 @@ class CurveEnds {
 }  // namespace
 
 HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve* const> curves,
-                     std::span<const double> density, std::uint64_t seed) {
+                     std::span<const double> density, std::uint64_t seed, const JobStage& stage) {
   HeldStart start;
   const double mass = mass_of(mesh, density);
   std::vector<std::vector<double>> sums;
@@ -299,8 +384,8 @@ HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve
   }
   const SurfacePoints rest = away_from(
       mesh, start.sites,
-      sample(mesh,
-             {.count = count, .density = density, .seed = seed, .one_per_component = mesh.component_count() > 1}));
+      sample(mesh, {.count = count, .density = density, .seed = seed, .one_per_component = mesh.component_count() > 1}),
+      stage);
   start.sites.insert(start.sites.end(), rest.begin(), rest.end());
   start.held.resize(start.sites.size(), k_none);
   return start;

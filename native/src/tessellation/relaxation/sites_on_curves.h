@@ -22,8 +22,8 @@ class HeldSites {
   bool any() const { return !curve_of_.empty(); }
   bool is_held(std::size_t site) const { return any() && curve_of_[site] != k_none; }
 
-  /// Brings the held sites to the nearest points of their curves.
-  std::vector<double> bring(SurfacePoints& sites) const;
+  /// Brings the held sites to the nearest points of their curves. \throw Cancelled.
+  std::vector<double> bring(SurfacePoints& sites, const JobStage& stage) const;
   /// Leaves of a field what points along the curves.
   void project(const std::vector<double>& along, const SurfacePoints& sites, TangentField& field) const;
   /// Moves the held sites along their curves instead of along geodesics: `moved` had them move like the others. Ends of
@@ -50,9 +50,9 @@ struct HeldStart {
 };
 
 /// Sites on the curves as far apart as neighbors in even cells of the density, the ends of open curves among them
-/// (fixed; of ends less than half of that apart along curves one), then a sample of the rest. \throw InputError when the curves alone need more than
-/// `count`; as initial_sites.
+/// (fixed; of ends less than half of that apart along curves one), then a sample of the rest. \throw InputError when
+/// the curves alone need more than `count`; as initial_sites.
 HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve* const> curves,
-                     std::span<const double> density, std::uint64_t seed);
+                     std::span<const double> density, std::uint64_t seed, const JobStage& stage);
 
 }  // namespace saddleback
