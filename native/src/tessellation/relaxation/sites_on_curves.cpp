@@ -31,7 +31,7 @@ double nearest_along(const SurfaceCurve& curve, const Vec3& place) {
   return along;
 }
 
-/// A point of the plane as seen along a segment: how far along it its foot is, and the square of how far that is away.
+/// The foot of a point on a segment: how far along it, and the square of how far away.
 struct Foot {
   double share, squared;
 };
@@ -219,7 +219,7 @@ double along_at(const SurfaceCurve& curve, const std::vector<double>& sums, doub
   return segment.start + segment.length * (sum - sums[i]) / (sums[i + 1] - sums[i]);
 }
 
-/// How far points are from the nearest site: squared, in space; along the surface where that does not show it.
+/// Returns how far points are from the nearest site: squared, in space; along the surface where that does not show it.
 std::vector<double> ranks_by_distance(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points,
                                       const JobStage& stage) {
   if (mesh.is_intrinsic()) return ExactField(mesh, sites, stage).distance_to(points);
@@ -274,8 +274,9 @@ double mass_of(const Mesh& mesh, std::span<const double> density) {
   return sum;
 }
 
-/// Where open curves end, those that several share once. Of ends that are less than half a cell apart along curves one
-/// is kept, rather one at which long curves meet: two sites there would have cells that no dual mesh can be made of.
+/// The ends of open curves, those that several share once. Of ends that are less than half a cell apart along curves
+/// one is kept, rather one at which long curves meet: two sites there would have cells that no dual mesh can be made
+/// of.
 class CurveEnds {
  public:
   /// `sums`: of each curve as `wanted_spacings` has them.
@@ -323,7 +324,7 @@ class CurveEnds {
     return found;
   }
 
-  /// By Dijkstra's search along short curves.
+  /// Searches along short curves, as Dijkstra does.
   bool has_kept_near(Index end) {
     std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
     std::vector<Index> reached{end};
