@@ -78,3 +78,26 @@ def angle_in_face(mesh: sb.Mesh, field: sb.DirectionField, point: sb.SurfacePoin
     normal = np.cross(first, corners[2] - corners[0])
     ahead = field.directions(point)[0]
     return float(np.arctan2(np.cross(normal, first) @ ahead / np.linalg.norm(normal), first @ ahead))
+
+
+def fits(
+    result: sb.Distribution, shape: int, point: sb.SurfacePoints, field: sb.DirectionField, larger: float
+) -> bool | None:
+    """Whether another copy of a class, turned as the field says and larger by a share, fits among those that lie there;
+    None where it cannot be laid at all.
+    """
+    mesh, laid = result.mesh, result.placements
+    size = laid.scale[laid.shape == shape][0]
+    away = np.linalg.norm(laid.center.positions(mesh) - point.positions(mesh), axis=1)
+    laid = laid[away < 1.2 * (size + laid.scale.max())]  # the circumradii are 1
+    among = sb.Placements(
+        np.append(laid.shape, shape),
+        sb.SurfacePoints(
+            np.append(laid.center.faces, point.faces), np.vstack([laid.center.barycentric, point.barycentric])
+        ),
+        np.append(laid.angle, angle_in_face(mesh, field, point)),
+        np.append(laid.scale, (1 + larger) * size),
+        np.append(laid.mirrored, False),
+    )
+    mapped = sb.map_shapes(mesh, result.shapes, among, result.field)
+    return None if mapped.failures else bool(sb.check_distribution(mesh, mapped, samples=1).ok)

@@ -422,6 +422,26 @@ def about_circle(loop: Floats, radius: float, place: Floats) -> Floats:
     return np.asarray((radius - y)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
 
 
+@guards("distribute")
+def laid_on_any_surface(mesh: sb.Mesh, rng: Random) -> None:
+    """However rough the mesh is, and whatever is forbidden: not refused, and no two copies meet by the checker, which
+    has truths of its own.
+    """
+    shape = [sb.Shape.needle(4), sb.Shape.star(), sb.Shape.disk(12)][rng.integers(3)]
+    count = int(rng.integers(1, 40))
+    forbidden = rng.random(mesh.face_count) < rng.random()
+    forbidden[rng.integers(mesh.face_count)] = False
+    orders = {"forbidden": forbidden} if rng.random() < 0.3 else {}
+    try:
+        laid = sb.distribute(
+            mesh, shape, count, sb.direction_field(mesh, int(rng.choice([1, 2, 4]))), threads=1,
+            size=float(np.sqrt(rng.uniform(0.1, 0.6) * mesh.area / count / shape.area)), **orders,
+        )  # fmt: skip
+    except sb.InputError as error:
+        raise AssertionError("a usual laying was refused") from error
+    assert sb.check_distribution(mesh, laid, samples=2_000, threads=1).ok
+
+
 @guards("Certificate", "distribute", on="nothing")
 def nothing_more_fits_along_circles(rng: Random) -> None:
     """Copies that bend along circles in the plane: none meets another, and where a certificate says that nothing more

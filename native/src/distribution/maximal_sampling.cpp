@@ -34,6 +34,8 @@ constexpr double k_drift = 4;
 /// Ways along edges are at most so much longer than others on meshes of sound triangles.
 constexpr double k_edge_excess = 1.5;
 constexpr Index k_border_corners = 24;
+/// Faces after which the tracing of a point of a copy is given up: many times more than a copy lies on.
+constexpr std::int64_t k_most_traced = 10'000;
 /// A round that lays less than this share of all is the last one, unless everything is wanted.
 constexpr double k_tired = 0.02;
 /// Drops of each try_batch on the area of a copy; a sweep needs many to choose from. The last ones are for when no
@@ -306,22 +308,46 @@ void MaximalSampling::throw_dart(const OpenCell& open, CellView& view, Index num
   look.dart = {order(point, key), kind, number, point, drawn_scale(kind, point, uniform(key, 4))};
 }
 
+/// Bounds from below how far a point of a forbidden face is from all that is allowed: as deep as the face, or as far as
+/// its edges.
+double MaximalSampling::depth_at(const SurfacePoint& point) const {
+  double deep = std::numeric_limits<double>::infinity(), inside = deep;
+  const double area = mesh_->face_area(point.face);
+  for (int i = 0; i < 3; ++i) {
+    deep = std::min(deep, forbidden_depth_[mesh_->triangles()[point.face][i]]);
+    inside = std::min(inside, 2 * area * point.barycentric[i] / mesh_->length(3 * point.face + (i + 1) % 3));
+  }
+  return std::max(deep, inside);
+}
+
+/// Tells whether a point of a copy certainly lies beyond the border, or where nothing may lie.
+bool MaximalSampling::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion,
+                                       const Vec2& point) const {
+  const double length = point.norm() * copy.placement.scale, moved = motion.of(point);
+  const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
+  const std::optional<TraceEnd> end =
+      trace_end_within(*mesh_, view.center, angle_about(*mesh_, view.center, angle), length, k_most_traced);
+  if (!end) return false;
+  if (end->hit_boundary) return length - end->length > moved;
+  return !forbidden_depth_.empty() && options_->forbidden[end->point.face] && depth_at(end->point) > moved;
+}
+
 bool MaximalSampling::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const {
-  Index corners = 0;
   const Index stride = 1 + copy.body->shape.corner_count() / k_border_corners;
-  for (const Shape::Loop& loop : copy.body->shape.loops())
-    for (const Vec2& corner : loop) {
-      if (corners++ % stride != 0) continue;
-      const double length = corner.norm() * copy.placement.scale, moved = motion.of(corner);
-      const TraceEnd end = trace_end(
-          *mesh_, view.center,
-          angle_about(*mesh_, view.center, copy.placement.angle + std::atan2(corner.y(), corner.x())), length);
-      if (end.hit_boundary && length - end.length > moved) return true;
-      if (end.hit_boundary || forbidden_depth_.empty() || !options_->forbidden[end.point.face]) continue;
-      double depth = std::numeric_limits<double>::infinity();
-      for (const Index vertex : mesh_->triangles()[end.point.face]) depth = std::min(depth, forbidden_depth_[vertex]);
-      if (depth > moved) return true;
-    }
+  // What is forbidden may lie within a copy, too.
+  constexpr std::array k_shares{1.0, 0.5, 0.25, 0.0};
+  for (const double share : k_shares) {
+    if (share < 1 && forbidden_depth_.empty()) break;
+    Index corners = 0;
+    for (const Shape::Loop& loop : copy.body->shape.loops())
+      for (const Vec2& corner : loop) {
+        if (corners++ % stride != 0) continue;
+        const Vec2 point = share * corner;
+        if (share < 1 && copy.body->distance.exact(point) > 0) continue;
+        if (is_beyond_border(view, copy, motion, point)) return true;
+        if (share == 0) return false;
+      }
+  }
   return false;
 }
 
@@ -329,11 +355,14 @@ bool MaximalSampling::is_beyond_border(const CellView& view, const Copy& copy, c
 bool MaximalSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other,
                                Vec2& place) const {
   const double length = point.norm() * copy.placement.scale;
+  // Where the surface bends much a plane may be laid on another with hardly a width: what that foresees lies nowhere.
+  if (!(length <= 2 * copy.radius())) return false;
   const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
-  const TraceEnd end = trace_end(*mesh_, view.center, angle_about(*mesh_, view.center, angle), length);
-  if (end.hit_boundary) return false;
-  const Vec2 in_face = rules_->flat().place(end.point);
-  return insertion_->settled().visit(end.point.face, {end.point.barycentric[1], end.point.barycentric[2]},
+  const std::optional<TraceEnd> end =
+      trace_end_within(*mesh_, view.center, angle_about(*mesh_, view.center, angle), length, k_most_traced);
+  if (!end || end->hit_boundary) return false;
+  const Vec2 in_face = rules_->flat().place(end->point);
+  return insertion_->settled().visit(end->point.face, {end->point.barycentric[1], end->point.barycentric[2]},
                                      copy.radius(), [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
                                        if (number != other) return false;
                                        place = origin + turn * in_face;

@@ -98,6 +98,8 @@ class MaximalSampling {
   bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found, const Pose& pose,
                   Index other) const;
+  double depth_at(const SurfacePoint& point) const;
+  bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion, const Vec2& point) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
   double order(const SurfacePoint& point, std::uint64_t key) const;
   double tolerance(const CellView& view, const Kind& kind) const {

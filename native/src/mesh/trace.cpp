@@ -82,7 +82,12 @@ double chart_angle_at(const Mesh& mesh, const SurfacePoint& point, double angle)
 template <class Record>
 class Walk {
  public:
-  Walk(const Mesh& mesh, double length, Record& record) : mesh_(mesh), length_(length), record_(record) {}
+  Walk(const Mesh& mesh, double length, Record& record, std::int64_t most_faces)
+      : mesh_(mesh), length_(length), record_(record), most_faces_(most_faces) {}
+
+  /// True where the curve crosses more faces than it may.
+  bool gave_up() const { return gave_up_; }
+  double traveled() const { return traveled_; }
 
   TraceEnd from_point(const SurfacePoint& start, double angle) {
     enter(3 * start.face);
@@ -116,9 +121,7 @@ class Walk {
   TraceEnd run(Step first) {
     bool going = (this->*first)();
     for (std::int64_t faces = 1; going; ++faces) {
-      if (faces > k_max_faces)
-        throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1,
-                                 " faces the curve is ", traveled_, " long"));
+      if (gave_up_ = faces > most_faces_; gave_up_) break;
       if (faces % k_faces_a_look == 0) record_.went(traveled_ / length_);
       going = at_corner_ ? leave_corner() : leave_through();
     }
@@ -290,6 +293,8 @@ class Walk {
   const Mesh& mesh_;
   const double length_;
   Record& record_;
+  const std::int64_t most_faces_;
+  bool gave_up_ = false;
   Index halfedge_ = 0;
   Vec2 place_ = Vec2::Zero(), direction_ = Vec2::UnitX();
   bool at_corner_ = false;
@@ -303,13 +308,27 @@ void check_trace(const Mesh& mesh, const SurfacePoint& start, double length) {
     throw InputError(message("length is ", length, ", but must be finite and not negative"));
 }
 
+/// Nothing where there are too many faces; then the length that was gone is told.
 template <class Record>
-TraceEnd walk(const Mesh& mesh, const SurfacePoint& start, double angle, double length, Record& record) {
+std::optional<TraceEnd> walk_within(const Mesh& mesh, const SurfacePoint& start, double angle, double length,
+                                    std::int64_t most_faces, Record& record, double& gone) {
   if (!std::isfinite(angle)) throw InputError(message("direction is ", angle, ", but must be finite"));
   check_trace(mesh, start, length);
-  Walk<Record> walk(mesh, length, record);
+  Walk<Record> walk(mesh, length, record, most_faces);
   const Index vertex = vertex_at(mesh, start);
-  return vertex == k_none ? walk.from_point(start, angle) : walk.from_vertex(start, vertex, angle);
+  const TraceEnd end = vertex == k_none ? walk.from_point(start, angle) : walk.from_vertex(start, vertex, angle);
+  gone = walk.traveled();
+  return walk.gave_up() ? std::nullopt : std::optional(end);
+}
+
+template <class Record>
+TraceEnd walk(const Mesh& mesh, const SurfacePoint& start, double angle, double length, Record& record) {
+  double gone = 0;
+  const std::optional<TraceEnd> end = walk_within(mesh, start, angle, length, k_max_faces, record, gone);
+  if (!end)
+    throw InputError(message("length ", length, " is too long to follow: after ", k_max_faces, " faces the curve is ",
+                             gone, " long"));
+  return *end;
 }
 
 /// The direction among those of the closed corner at h that is nearest to a unit vector.
@@ -392,6 +411,13 @@ double angle_about(const Mesh& mesh, const SurfacePoint& point, double chart_ang
 TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, double angle, double length) {
   NoPolyline nothing;
   return walk(mesh, start, angle, length, nothing);
+}
+
+std::optional<TraceEnd> trace_end_within(const Mesh& mesh, const SurfacePoint& start, double angle, double length,
+                                         std::int64_t most_faces) {
+  NoPolyline nothing;
+  double gone = 0;
+  return walk_within(mesh, start, angle, length, most_faces, nothing, gone);
 }
 
 TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length) {

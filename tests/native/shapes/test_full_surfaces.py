@@ -20,34 +20,13 @@ from tests.native.laid_shapes import (
     angle_in_face,
     at,
     collisions,
+    fits,
     laid_flat,
     plane,
     ring,
     same,
 )
-
-
-def fits(
-    result: sb.Distribution, shape: int, point: sb.SurfacePoints, field: sb.DirectionField, larger: float
-) -> bool | None:
-    """Whether another copy of a class, turned as the field says and larger by a share, fits among those that lie there;
-    None where it cannot be laid at all.
-    """
-    mesh, laid = result.mesh, result.placements
-    size = laid.scale[laid.shape == shape][0]
-    away = np.linalg.norm(laid.center.positions(mesh) - point.positions(mesh), axis=1)
-    laid = laid[away < 1.2 * (size + laid.scale.max())]  # the circumradii are 1
-    among = sb.Placements(
-        np.append(laid.shape, shape),
-        sb.SurfacePoints(
-            np.append(laid.center.faces, point.faces), np.vstack([laid.center.barycentric, point.barycentric])
-        ),
-        np.append(laid.angle, angle_in_face(mesh, field, point)),
-        np.append(laid.scale, (1 + larger) * size),
-        np.append(laid.mirrored, False),
-    )
-    mapped = sb.map_shapes(mesh, result.shapes, among, result.field)
-    return None if mapped.failures else bool(sb.check_distribution(mesh, mapped, samples=1).ok)
+from tests.truth import families
 
 
 @pytest.mark.parametrize(
@@ -277,3 +256,26 @@ def test_a_surface_that_folds_is_filled_quickly() -> None:
     assert result.certificate is not None
     assert result.certificate.uncertified_area < mesh.face_areas[rough[triangles].any(axis=1)].sum()
     assert sb.check_distribution(mesh, result, samples=0)
+
+
+def test_planes_that_are_laid_on_others_with_hardly_a_width() -> None:
+    """Copies larger than the faces of boxes: what such planes foresee is far away, and was followed there."""
+    for seed in range(12):
+        mesh = sb.Mesh(*families.lattice(np.random.default_rng(seed)))
+        for symmetry in (1, 4):
+            field, size = sb.direction_field(mesh, symmetry), np.sqrt(0.5 * mesh.area / 25 / NEEDLE.area)
+            result = sb.distribute(mesh, NEEDLE, 25, field=field, size=size)
+            assert sb.check_distribution(mesh, result, samples=20_000).ok
+
+
+def test_forbidden_faces_here_and_there() -> None:
+    """No vertex is within what is forbidden, and hardly a corner of a copy that nothing else forbids."""
+    mesh = sb.Mesh(*meshes.torus(60, 30))
+    field, forbidden = sb.direction_field(mesh, 2), mesh.triangles[:, 0] % 5 == 0
+    result = sb.distribute(mesh, STAR, field=field, size=0.09, maximal=True, forbidden=forbidden)
+    assert result.stop_reason == "full"
+    assert len(result) > 20
+    outlines = np.concatenate([loop for i in range(len(result)) for loop in result.outline(i)])
+    inner = sb.project(mesh, outlines)
+    deep = forbidden[inner.faces] & (inner.barycentric.min(axis=1) > 1e-6)
+    assert not deep.any()

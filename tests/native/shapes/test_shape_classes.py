@@ -8,7 +8,7 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
-from tests.native.shapes.test_distribution import (
+from tests.native.laid_shapes import (
     CRESCENT,
     DISK,
     NEEDLE,

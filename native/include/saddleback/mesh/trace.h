@@ -1,6 +1,9 @@
 #pragma once
 // Straightest geodesics: the exponential map.
 
+#include <cstdint>
+#include <optional>
+
 #include "saddleback/job.h"
 #include "saddleback/mesh/surface_points.h"
 
@@ -48,6 +51,9 @@ TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direc
 /// The end of the same curve, to the bit, without its polyline: no allocation.
 TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, double angle, double length);
 TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length);
+/// The same, but nothing where the curve crosses more than so many faces.
+std::optional<TraceEnd> trace_end_within(const Mesh& mesh, const SurfacePoint& start, double angle, double length,
+                                         std::int64_t most_faces);
 
 /// The angle by which `trace` would set out in that direction.
 double start_angle(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction);

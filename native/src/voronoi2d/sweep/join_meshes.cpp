@@ -78,7 +78,7 @@ Index MeshJoiner::add_triangle(MeshPart& part, Index a, Index b, Index c) {
   return half;
 }
 
-void MeshJoiner::set_cuda_module(Index a, Index b) {
+void MeshJoiner::set_twins(Index a, Index b) {
   mesh_.twins[a] = b;
   mesh_.twins[b] = a;
 }
@@ -144,7 +144,7 @@ Index MeshJoiner::close_further(MeshPart& result, Gap& gap, bool is_left) {
   const Index half = add_triangle(result, gap.left, gap.right, edge.site);
   for (Index k = 0; k < 3; ++k)
     if (Index& from = leaving_[mesh_.triangles[half + k]]; from == k_none) from = half + k;
-  if (gap.base != k_none) set_cuda_module(half, gap.base);
+  if (gap.base != k_none) set_twins(half, gap.base);
   attach(is_left ? half + 2 : half + 1, edge);
   gap.base = is_left ? half + 1 : half + 2;
   (is_left ? gap.left : gap.right) = edge.site;
@@ -242,9 +242,9 @@ Index MeshJoiner::other_leaving(const Gap& gap, Index half) const {
 
 /// Joins a new triangle to what is behind an edge of a rim.
 void MeshJoiner::attach(Index half, const RimEdge& edge) {
-  if (edge.half >= 0) return set_cuda_module(half, edge.half);
+  if (edge.half >= 0) return set_twins(half, edge.half);
   Index& other = loose_[~edge.half];
-  if (other >= 0) return set_cuda_module(half, other);
+  if (other >= 0) return set_twins(half, other);
   other = half;
 }
 
@@ -277,11 +277,11 @@ Index MeshJoiner::join_site(MeshPart& result, Index site, Index nearest) {
   while (sees(half)) {
     const Index from = mesh_.triangles[half], to = target(half), beyond = leaving_[to];
     const Index added = add_triangle(result, to, from, site);
-    set_cuda_module(added, half);
+    set_twins(added, half);
     if (latest == k_none)
       first_new = added;
     else
-      set_cuda_module(latest + 2, added + 1);
+      set_twins(latest + 2, added + 1);
     latest = added;
     half = beyond;
   }

@@ -54,7 +54,7 @@ class alignas(k_apart) MeshJoiner {
   Index target(Index half) const { return mesh_.triangles[next_half(half)]; }
   Index before_on_border(Index half) const;
   Index add_triangle(MeshPart& part, Index a, Index b, Index c);
-  void set_cuda_module(Index a, Index b);
+  void set_twins(Index a, Index b);
   /// An edge of a part's border, on the way around it from the base of the gap.
   struct RimEdge {
     Index site;  ///< where the way comes to

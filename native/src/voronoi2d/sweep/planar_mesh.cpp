@@ -16,7 +16,7 @@ Sign circle_test(const PlanarMesh& mesh, Index half) {
 
 namespace {
 
-void set_cuda_module(PlanarMesh& mesh, Index a, Index b) {
+void set_twins(PlanarMesh& mesh, Index a, Index b) {
   mesh.twins[a] = b;
   if (b != k_none) mesh.twins[b] = a;
 }
@@ -31,9 +31,9 @@ void exchange_pair(PlanarMesh& mesh, Index half) {
   mesh.triangles[half_next] = s;
   mesh.triangles[twin_next] = r;
   const Index beyond_half = mesh.twins[half_next], beyond_twin = mesh.twins[twin_next];
-  set_cuda_module(mesh, half, beyond_twin);
-  set_cuda_module(mesh, twin, beyond_half);
-  set_cuda_module(mesh, half_next, twin_next);
+  set_twins(mesh, half, beyond_twin);
+  set_twins(mesh, twin, beyond_half);
+  set_twins(mesh, half_next, twin_next);
 }
 
 namespace {
@@ -55,7 +55,7 @@ Index add_triangle(PlanarMesh& mesh, Index a, Index b, Index c) {
 /// Covers the hull's edge that leaves `from` by a triangle with the site; returns the half-edge from the site.
 Index cover(PlanarMesh& mesh, const Hull& hull, Index from, Index site) {
   const Index half = add_triangle(mesh, hull.next[from], from, site);
-  set_cuda_module(mesh, half, hull.half[from]);
+  set_twins(mesh, half, hull.half[from]);
   return half;
 }
 
@@ -67,7 +67,7 @@ void join_to_hull(PlanarMesh& mesh, Hull& hull, Index latest, Index site) {
   Index first = latest, last = latest, first_half = k_none, last_half = k_none;
   while (sees(last)) {  // half + 1 comes from the ring to the site, half + 2 goes back
     const Index half = cover(mesh, hull, last, site);
-    if (last_half != k_none) set_cuda_module(mesh, last_half + 2, half + 1);
+    if (last_half != k_none) set_twins(mesh, last_half + 2, half + 1);
     if (first_half == k_none) first_half = half;
     last_half = half;
     last = hull.next[last];
@@ -75,7 +75,7 @@ void join_to_hull(PlanarMesh& mesh, Hull& hull, Index latest, Index site) {
   while (sees(hull.previous[first])) {
     first = hull.previous[first];
     const Index half = cover(mesh, hull, first, site);
-    if (first_half != k_none) set_cuda_module(mesh, half + 2, first_half + 1);
+    if (first_half != k_none) set_twins(mesh, half + 2, first_half + 1);
     if (last_half == k_none) last_half = half;
     first_half = half;
   }
@@ -111,7 +111,7 @@ void triangulate_from_left(PlanarMesh& mesh) {
   for (Index i = 0; i + 1 < apex; ++i) {
     const Index a = is_left ? order[i] : order[apex - 1 - i], b = is_left ? order[i + 1] : order[apex - 2 - i];
     const Index half = add_triangle(mesh, a, b, top);
-    if (last_half != k_none) set_cuda_module(mesh, last_half + 1, half + 2);
+    if (last_half != k_none) set_twins(mesh, last_half + 1, half + 2);
     if (last_half == k_none) hull.half[top] = half + 2;
     last_half = half;
     hull.next[a] = b;
