@@ -92,10 +92,6 @@ def test_positions_need_no_area_where_lengths_are_given():
         lambda mesh, _: sb.stroke_map(mesh, sb.SurfaceCurve(mesh, mesh.edges[0]), 0.1),
         lambda mesh, _: sb.distribute(mesh, [sb.Shape.disk()], 2, size=0.1).conform([(0, 0)], 0),
         lambda mesh, _: sb.distribute(mesh, [sb.Shape.disk()], 2, size=0.1).mapped.frames(),
-        lambda mesh, _: sb.centroidal_voronoi(
-            sb.SaddleVertexGraph(mesh), count=9, curves=[sb.SurfaceCurve(mesh, mesh.edges[0])]
-        ),
-        lambda mesh, _: sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), [0, 5], exact=True),
     ],
 )
 def test_what_needs_a_shape_in_space_says_so(ask):
