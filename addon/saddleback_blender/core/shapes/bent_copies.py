@@ -92,7 +92,7 @@ def _row(parts: list[Any], dtype: type[np.generic]) -> Any:
 
 
 def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int, copies: NDArray[np.int64]) -> _Piece:
-    """Copies of a class: polygons as they were where nothing of them was divided, else triangles."""
+    """Copies of a class: polygons as they were where nothing of them was divided or folded, else triangles."""
     parted = solid.parted()
     polygon = (np.searchsorted(solid.offsets, parted[:, 0], "right") - 1).astype(np.int32)
     begins, ends = bent.begins[copies], bent.begins[copies + 1]
@@ -109,6 +109,9 @@ def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int, copies: NDArray[
     is_whole = np.ones((len(copies), len(solid.offsets) - 1), bool)
     row, triangle = np.nonzero(parts != 1)
     is_whole[row, polygon[triangle]] = False
+    # Blender parts one that folds along another diagonal, where it may pass through what it was clear of.
+    folded = _is_folded(bent.vertices[bent.triangles[mine]], owner, source, polygon)
+    is_whole[owner[folded], polygon[source[folded]]] = False
     whole_row, whole = np.nonzero(is_whole)
     is_mirrored = np.asarray(mapped.placements.mirrored)[copies][whole_row]
 
@@ -132,6 +135,16 @@ def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int, copies: NDArray[
         copy=np.concatenate([copies[whole_row], bent.triangle_copy[cut]]).astype(np.int32),
         shape=shape,
     )
+
+
+def _is_folded(corners: Reals, owner: NDArray[np.int64], source: Indices, polygon: Indices) -> NDArray[np.bool_]:
+    """(t,) triangles (t, 3, 3) that do not face as the first one of their polygon does, given whose each is."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    row = np.zeros((owner.max(initial=-1) + 1) * len(polygon), np.int64)
+    row[owner * len(polygon) + source] = np.arange(len(source))
+    first = row[owner * len(polygon) + np.searchsorted(polygon, polygon[source])]
+    found: NDArray[np.bool_] = np.einsum("ij,ij->i", normals, normals[first]) <= 0
+    return found
 
 
 def _runs(firsts: Indices, sizes: Indices, is_backwards: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -176,9 +176,13 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
 
 
 def _pairs(points: Reals, triangles: Indices, owner: Indices, among: Indices | None, job: Any) -> NDArray[np.int64]:
-    """(k, 2) copies that pass through each other, given whose each triangle is; of those `among` the triangles only."""
+    """(k, 2) copies that pass through each other, given whose each triangle is; of those `among` the triangles only.
+
+    As they are once Blender has rounded them.
+    """
     used, corners = np.unique(triangles, return_inverse=True)
-    found = find_crossings(points[used], corners.reshape(-1, 3).astype(np.int32), among, job)
+    rounded = points[used].astype(np.float32).astype(np.float64)
+    found = find_crossings(rounded, corners.reshape(-1, 3).astype(np.int32), among, job)
     owners = np.sort(owner[found].astype(np.int64), axis=1)
     pairs: NDArray[np.int64] = np.unique(owners[owners[:, 0] != owners[:, 1]], axis=0)
     return pairs
