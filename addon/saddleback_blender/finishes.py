@@ -35,9 +35,10 @@ def ground_of(look: str) -> bpy.types.Material | None:
 
 
 def has_colors(look: str) -> bool:
-    """Tells whether what a look makes has many colors."""
+    """Tells whether what a look makes has many colors, or the body has."""
     finish = finish_of(look)
-    return finish is not None and len(finish.colors) > 1
+    has_preview = look in LOOKS and LOOKS[look].settings.get("make_preview", False)
+    return has_preview or (finish is not None and len(finish.colors) > 1)
 
 
 def material_of(look: str, otherwise: Callable[[], bpy.types.Material]) -> bpy.types.Material:

@@ -14,6 +14,7 @@ from scenes import add_object, attribute, grid, positions, select, sphere
 from saddleback_blender import finishes, jobs, looks, nodes
 from saddleback_blender.bridge.inputs.mesh_in import read_triangles
 from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
+from saddleback_blender.bridge.outputs.preview import COLORS, RAMP
 from saddleback_blender.core import native
 from saddleback_blender.core.surfaces.normals import normals_at
 from saddleback_blender.ops.look_presets import read_preset
@@ -139,6 +140,45 @@ def test_colors_of_cells_are_those_of_the_look_and_no_two_neighbors_have_the_sam
     share = seen[:, None] / palette  # how bright, for each of the palette's
     is_near = (np.ptp(share, axis=2) < 0.1) & (abs(share.mean(axis=2) - 1.0) < finish.contrast + 0.05)
     assert is_near.any(axis=1).all() and is_near.any(axis=0).all()
+
+
+def vertex_colors(mesh, name):
+    """(V, 4) linear colors."""
+    found = np.empty(4 * len(mesh.vertices), np.float32)
+    mesh.color_attributes[name].data.foreach_get("color", found)
+    return found.reshape(-1, 4)
+
+
+@pytest.mark.parametrize("own", ["", "Paint"])
+@pytest.mark.parametrize("levels", [0, 1])
+def test_solid_view_shows_the_colors_of_bands(levels, own):
+    item = sphere()
+    if own:
+        item.data.color_attributes.new(own, "BYTE_COLOR", "POINT")
+    if levels:
+        item.modifiers.new("Smooth", "SUBSURF").levels = levels
+    assert finishes.has_colors("BANDS") and not finishes.has_colors("LAMP")
+    apply("BANDS")
+    shown = (find_output(item, "surface") if levels else item).data
+    if own:
+        assert shown.color_attributes.active_color.name == own
+        return
+    assert shown.color_attributes.active_color.name == COLORS
+    far = np.array([element.value for element in shown.attributes["saddleback_distance"].data])
+    colors = vertex_colors(shown, COLORS)
+    nearest, farthest = colors[far.argmin(), :3], colors[far.argmax(), :3]
+    assert nearest == pytest.approx(RAMP[0][1], abs=0.3) and farthest == pytest.approx(RAMP[-1][1], abs=1e-6)
+    assert nearest.sum() > farthest.sum()
+    apply("PANELS")
+    assert COLORS not in item.data.attributes and COLORS not in shown.attributes
+
+
+def test_a_lamp_has_its_color_where_solid_view_shows_attributes():
+    item = sphere()
+    apply("LAMP")
+    colors = vertex_colors(find_output(item, "shell").data, nodes.COLOR_ATTRIBUTE)
+    lamp = finishes.palette_of(looks.finish_of("LAMP"))[0]
+    assert np.median(colors[:, :3], axis=0) == pytest.approx(lamp, abs=0.01)
 
 
 @pytest.mark.parametrize("size", [0.06, 120.0])

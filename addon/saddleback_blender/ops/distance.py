@@ -70,7 +70,7 @@ class DistanceOperator(SurfaceOperator):
             self.drop(source, ISOLINES_ROLE)
         if settings.make_preview:
             spacing = isoline_spacing(settings, farthest) if settings.preview_lines else 0.0
-            show_preview(surface, settings.distance_attribute, farthest, spacing)
+            show_preview(surface, settings.distance_attribute, distances, farthest, spacing)
         else:
             hide_preview(surface)
         keep_settings(chosen, "distance", source)

@@ -2,7 +2,8 @@
 """A look at distances: a material of colors and lines on the object, without touching the artist's own materials.
 
 Each material slot of the object is linked to the object instead of the mesh and shows the preview; the mesh keeps its
-materials. Taking the preview away links the slots back.
+materials. Taking the preview away links the slots back. Solid view shows no nodes: it gets the same colors as an
+attribute, where the mesh has no colors of the artist's.
 """
 
 from __future__ import annotations
@@ -11,13 +12,18 @@ from functools import partial
 from typing import Any
 
 import bpy
+import numpy as np
 
 from ... import compat, nodes, rollback
+from ...core.results import Reals
 from ...finishes import GROUND
+from .out_attributes import recorded, write_vertex_attributes
 
 KIND = "distance"
 ADDED_SLOT = "saddleback_preview_slot"  # on an object: the slot that a mesh without materials was given
 BEFORE = "saddleback_before_preview_"  # on an object, with a slot's number: the material that was linked to the object
+
+COLORS = "saddleback_distance_color"  # of a mesh's vertices
 
 # Node names, by which a later run finds what it sets; all else of the material is the artist's to change.
 ATTRIBUTE, FARTHEST, SPACING, DARKNESS = "Distance", "Farthest", "Line Spacing", "Line Darkness"
@@ -35,8 +41,13 @@ RAMP = (
 )
 
 
-def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacing: float) -> bpy.types.Material:
-    """Shows the attribute from 0 to `farthest` in colors, with a line every `spacing` (0: none) mesh units."""
+def show_preview(
+    item: bpy.types.Object, attribute: str, distances: Reals, farthest: float, spacing: float
+) -> bpy.types.Material:
+    """Shows the attribute from 0 to `farthest` in colors, with a line every `spacing` (0: none) mesh units.
+
+    `distances` (V,) are its values.
+    """
     _remember(item)
     material = _own_material(item)
     if material is None:
@@ -51,7 +62,17 @@ def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacin
             item[f"{BEFORE}{number}"] = slot.material
         slot.link = "OBJECT"
         slot.material = material
+    if all(color.name == COLORS for color in item.data.color_attributes):
+        write_vertex_attributes(item, {COLORS: _ramp_colors(distances, farthest)})
+        compat.show_color(item.data, COLORS)
     return material
+
+
+def _ramp_colors(distances: Reals, farthest: float) -> Reals:
+    """(V, 4) linear colors of the ramp; what is out of reach has the last one."""
+    share = distances / max(farthest, 1e-30)
+    stops, colors = np.array([stop for stop, _ in RAMP]), np.array([(*color, 1.0) for _, color in RAMP])
+    return np.column_stack([np.interp(share, stops, channel) for channel in colors.T]).astype(np.float32)
 
 
 def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
@@ -70,6 +91,9 @@ def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
 def hide_preview(item: bpy.types.Object, kind: str = KIND) -> bool:
     """Gives the object its own materials back; says whether it showed a preview, or what else begins with `kind`."""
     _remember(item)
+    if kind == KIND and COLORS in item.data.attributes and COLORS in recorded(item.data):
+        rollback.remember_attribute(item.data, COLORS)
+        item.data.attributes.remove(item.data.attributes[COLORS])
     shown = [(number, slot) for number, slot in enumerate(item.material_slots) if _is_of(slot.material, kind)]
     if not shown:
         return False
