@@ -62,10 +62,11 @@ def test_too_few_cells_are_told_when_strict_and_mended_by_repair():
     assert cache.builds["cells"] == 1 and cache.builds["dual"] == 2
     assert strict.count == 2 and len(strict.dual.vertices) == 2 and len(strict.dual.triangles) == 0
     assert strict.dual.issues and strict.figures is None and not lines_of(None)
-    (told,) = faults_of(strict.dual)
-    assert "too large" in told and strict.dual.issues[0] in told
+    (told,) = faults_of(strict.dual, "STRICT")
+    assert "too large" in told and strict.dual.issues[0] in told and "choose Repair" in told
+    assert "choose Repair" not in faults_of(strict.dual, "REPAIR")[0]  # of a look, which has tried
     assert repaired.dual.added == len(repaired.dual.vertices) - 2 > 0
-    assert not repaired.dual.issues and not faults_of(repaired.dual) and euler(repaired.dual.triangles) == 2
+    assert not repaired.dual.issues and not faults_of(repaired.dual, "REPAIR") and euler(repaired.dual.triangles) == 2
 
 
 def needle():
@@ -99,7 +100,7 @@ def test_sites_are_moved_for_a_dual_mesh_only_and_only_where_they_may_move():
 def test_only_some_faults_are_told_one_by_one():
     none = np.empty((0, 3))
     dual = Dual(none, none.astype(np.int32), none, none, 0, 0, tuple(f"fault {i}" for i in range(5)))
-    (told,) = faults_of(dual)
+    (told,) = faults_of(dual, "STRICT")
     assert "fault 2; and 2 more" in told and "fault 3" not in told
 
 

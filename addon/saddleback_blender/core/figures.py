@@ -10,6 +10,7 @@ from .results import CellMesh, Dual, Figures, LampShell, SurfacePolygons
 
 # Faults told one by one; of more only the number.
 MOST_TOLD = 3
+JOIN = "give the object a Remesh modifier (Voxel) first"  # Repair joins no parts that pass through each other
 LEAST_TOLD = 0.01  # of a shell's thickness: units would say 0 of thinner places
 
 
@@ -26,14 +27,14 @@ def lines_of(figures: Figures | None) -> list[str]:
     return lines
 
 
-def faults_of(dual: Dual) -> list[str]:
-    """One sentence where the mesh has faults."""
+def faults_of(dual: Dual, policy: str) -> list[str]:
+    """One sentence where the mesh has faults. One of a look has some though the policy is REPAIR: that was in vain."""
     if not dual.issues:
         return []
     told = "; ".join(dual.issues[:MOST_TOLD])
     rest = len(dual.issues) - MOST_TOLD
     more = f"; and {rest} more" if rest > 0 else ""
-    how = "ask for more cells, choose Repair, or mend the mesh there"
+    how = f"ask for more cells{_or_repair(policy)}, or {JOIN}"
     return [f"The dual mesh has faults where cells are too large ({told}{more}): {how}"]
 
 
@@ -58,7 +59,8 @@ def shell_faults_of(shell: LampShell) -> list[str]:
         faults.append(several if shell.parts > 1 else f"{told}: ask for more cells")
     if shell.crossing:
         faults.append(
-            f"{shell.crossing} faces of the lamp shell pass through others: make it thinner, or repair the mesh"
+            f"{shell.crossing} faces of the lamp shell pass through others: make it thinner or, where the mesh passes "
+            f"through itself, {JOIN}"
         )
     return faults
 
@@ -69,17 +71,23 @@ def cell_faults_of(cells: CellMesh) -> list[str]:
     if not count:
         return []
     told = "1 cell passes" if count == 1 else f"{count} cells pass"
-    return [f"{told} through others or itself, where the surface is folded: repair the mesh there"]
+    where = "through others or itself" if count == 1 else "through others or themselves"
+    return [f"{told} {where}, as the mesh does there or nearly does: no harm in a picture; for a print {JOIN}"]
 
 
-def polygon_faults_of(polygons: SurfacePolygons) -> list[str]:
+def polygon_faults_of(polygons: SurfacePolygons, policy: str) -> list[str]:
     """One sentence where cells have no polygon."""
     count = len(polygons.missing)
     if not count:
         return []
     told = ", ".join(str(cell) for cell in polygons.missing[:MOST_TOLD]) + (", ..." if count > MOST_TOLD else "")
     what = "1 cell has no face" if count == 1 else f"{count} cells have no face"
-    return [f"{what}, since none can be as large ({told}): ask for more cells, or choose Repair"]
+    return [f"{what}, since none can be as large ({told}): ask for more cells{_or_repair(policy)}"]
+
+
+def _or_repair(policy: str) -> str:
+    """What else helps where it has not been tried."""
+    return "" if policy == "REPAIR" else ", or choose Repair"
 
 
 def lost_of(lost: int, thinner: int = 0) -> str:

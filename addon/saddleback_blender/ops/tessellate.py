@@ -104,6 +104,7 @@ class CellsOperator(SurfaceOperator):
     thickness: float
     cell_faces: str
     density_source: str
+    dual_policy: str
     flowing: FlowingCells | None = None  # cells to go on from
     _parts = ""  # why there are more cells than asked for
 
@@ -188,8 +189,8 @@ class CellsOperator(SurfaceOperator):
     def notes(self, result: CellsResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
         cells = [] if result.mesh is None else cell_faults_of(result.mesh)
-        dual = [] if result.dual is None else faults_of(result.dual)
-        polygons = [] if result.polygons is None else polygon_faults_of(result.polygons)
+        dual = [] if result.dual is None else faults_of(result.dual, self.dual_policy)
+        polygons = [] if result.polygons is None else polygon_faults_of(result.polygons, self.dual_policy)
         return [*cells, *polygons, *dual, *([] if result.shell is None else shell_faults_of(result.shell))]
 
     def figures(self, result: CellsResult) -> list[str]:
