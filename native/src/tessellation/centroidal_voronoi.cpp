@@ -81,9 +81,8 @@ void show_cells(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& 
   cells->match(result.sites);
   cells->find(result.sites, showing.part(0, 0.7));
   cells->look_farther(showing.part(0.7, 0.8));
-  const CandidatesOfCells candidates(cells->candidates());
-  const CellComplex complex(candidates, options.threads, showing.part(0.8, 1));
-  result.cells = make_diagram(graph.mesh(), complex, result.sites, showing);
+  const CandidatesOfCells candidates(cells->candidates(), options.threads);
+  result.cells = make_diagram(graph.mesh(), candidates, result.sites, options.threads, showing.part(0.8, 1));
 }
 
 /// Sites on the curves and others, relaxed. Where the cell of a free site reaches across a curve, the site is put onto

@@ -191,7 +191,7 @@ GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job*
   const ExactParts parts(*field, kept, tolerances(mesh, sites), stage.part(0.3, 0.8));
   const FacesOfParts faces(parts);
   const ExactCandidates candidates(parts, faces.table(), static_cast<Index>(sites.size()));
-  GeodesicVoronoi diagram = subdivision(CellComplex(candidates, 1, stage.part(0.85, 0.95)), sites, stage);
+  GeodesicVoronoi diagram = subdivision(candidates, sites, 1, stage.part(0.85, 0.95));
   InFaces(parts, diagram).tell();
   for (const SurfacePoint& point : diagram.points) diagram.point_distance.push_back(field->nearest_at(point).distance);
   diagram.exact_field = std::move(field);

@@ -5,11 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "saddleback/error.h"
 
 #include "geodesics/queries/point_targets.h"
+#include "support/threads/parallel.h"
+#include "tessellation/cells/cell_complex.h"
 #include "tessellation/cells/split_mesh.h"
 #include "tessellation/relaxation/diagram.h"
 
@@ -19,18 +22,26 @@ namespace {
 /// Twice the signed area, as a share of the face, of a triangle given in barycentric coordinates.
 double double_area(const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)); }
 
-std::vector<double> cell_areas(const CellComplex& complex) {
-  const FaceTable& table = complex.table();
-  std::vector<double> areas(complex.site_count(), 0);
-  for (Index f = 0; f < table.face_count(); ++f) {
-    if (complex.face_site(f) != k_none) areas[complex.face_site(f)] += table.areas[f];
-  }
-  for (const CellComplex::Piece& piece : complex.pieces()) {
-    const Vec3* corner = &complex.loop_barycentric()[piece.first];
-    double share = 0;
-    for (Index i = 1; i + 1 < piece.count; ++i) share += double_area(corner[0], corner[i], corner[i + 1]);
-    areas[piece.site] += share * table.areas[piece.face];
-  }
+/// Areas of each cell are added face after face, whatever the number of threads.
+std::vector<double> cell_areas(const FaceTable& table, const GeodesicVoronoi& cells, int threads) {
+  constexpr Index k_least_part = 64;  // cells: each thread looks at all faces
+  const auto site_count = static_cast<Index>(cells.sites.size());
+  const Index parts = std::clamp(site_count / k_least_part, 1, thread_count(threads));
+  const auto end = [&](Index part) { return static_cast<Index>(std::int64_t{site_count} * part / parts); };
+  std::vector<double> areas(site_count, 0);
+  parallel_for(parts, threads, 1, [&](Index part, int) {
+    const Index first = end(part), last = end(part + 1);
+    const auto is_own = [&](Index cell) { return cell >= first && cell < last; };
+    for (Index face = 0; face < table.face_count(); ++face)
+      if (const Index cell = cells.face_cell[face]; is_own(cell)) areas[cell] += table.areas[face];
+    for (const GeodesicVoronoi::Piece& piece : cells.pieces) {
+      if (!is_own(piece.cell)) continue;
+      const Vec3* corner = &cells.piece_barycentric[piece.first];
+      double share = 0;
+      for (Index i = 1; i + 1 < piece.count; ++i) share += double_area(corner[0], corner[i], corner[i + 1]);
+      areas[piece.cell] += share * table.areas[piece.face];
+    }
+  });
   return areas;
 }
 
@@ -40,32 +51,51 @@ struct Segment {
   Index left, right;
 };
 
-std::vector<Segment> find_segments(const CellComplex& complex) {
-  struct Side {
-    Index from, to, site;
-  };
-  const Index first_point = complex.table().vertex_count;
-  std::vector<Segment> segments;
-  std::vector<Side> sides;
-  const auto& pieces = complex.pieces();
-  for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
-    sides.clear();
-    for (; end < pieces.size() && pieces[end].face == pieces[begin].face; ++end) {
-      const Index* loop = &complex.loop()[pieces[end].first];
-      for (Index i = 0; i < pieces[end].count; ++i)
-        sides.push_back({loop[i], loop[(i + 1) % pieces[end].count], pieces[end].site});
-    }
-    for (const Side& a : sides) {
-      if (a.from > a.to) continue;
-      for (const Side& b : sides) {
-        if (b.from != a.to || b.to != a.from || b.site == a.site) continue;
-        if (a.from < first_point)  // rather than write to where no point is
-          throw std::logic_error(message("cells ", a.site, " and ", b.site, " meet in vertex ", a.from));
-        segments.push_back({a.from - first_point, a.to - first_point, a.site, b.site});
-      }
+struct PieceSide {
+  Index from, to, cell;
+};
+
+/// Appends the segments between the pieces of a face, given by their sides.
+void add_segments(std::span<const PieceSide> sides, Index first_point, std::vector<Segment>& segments) {
+  for (const PieceSide& a : sides) {
+    if (a.from > a.to) continue;
+    for (const PieceSide& b : sides) {
+      if (b.from != a.to || b.to != a.from || b.cell == a.cell) continue;
+      if (a.from < first_point)  // rather than write to where no point is
+        throw std::logic_error(message("cells ", a.cell, " and ", b.cell, " meet in vertex ", a.from));
+      segments.push_back({a.from - first_point, a.to - first_point, a.cell, b.cell});
     }
   }
-  return segments;
+}
+
+std::vector<Segment> find_segments(const GeodesicVoronoi& cells, Index first_point, int threads) {
+  constexpr Index k_block = 512;  // pieces; each begins with the first whole face
+  const std::span<const GeodesicVoronoi::Piece> pieces = cells.pieces;
+  const auto count = static_cast<Index>(pieces.size()), blocks = (count + k_block - 1) / k_block;
+  const auto begin_of = [&](Index block) {
+    Index begin = std::min(block * k_block, count);
+    while (begin > 0 && begin < count && pieces[begin].face == pieces[begin - 1].face) ++begin;
+    return begin;
+  };
+  std::vector<std::vector<Segment>> of_blocks(blocks);
+  parallel_for(blocks, threads, 1, [&](Index block, int) {
+    std::vector<PieceSide> sides;
+    std::vector<Segment> segments;
+    const Index last = begin_of(block + 1);
+    for (Index begin = begin_of(block), end = begin; begin < last; begin = end) {
+      sides.clear();
+      for (; end < last && pieces[end].face == pieces[begin].face; ++end) {
+        const Index* loop = &cells.piece_vertices[pieces[end].first];
+        for (Index i = 0; i < pieces[end].count; ++i)
+          sides.push_back({loop[i], loop[(i + 1) % pieces[end].count], pieces[end].cell});
+      }
+      add_segments(sides, first_point, segments);
+    }
+    of_blocks[block] = std::move(segments);
+  });
+  std::vector<Segment> all;
+  for (const std::vector<Segment>& segments : of_blocks) all.insert(all.end(), segments.begin(), segments.end());
+  return all;
 }
 
 /// Chains segments into polylines that end at branch points or at the mesh's boundary, or are closed.
@@ -131,16 +161,22 @@ class Chains {
   GeodesicVoronoi& out_;
 };
 
-void copy_candidates(const FaceCandidates& candidates, GeodesicVoronoi& out) {
-  out.face_candidates.assign(1, 0);
-  for (Index face = 0; face < candidates.table().face_count(); ++face) {
-    if (const Index shared = candidates.shared_index(face); shared != k_none) {
-      for (const FaceCandidate& candidate : candidates.candidates(shared)) {
-        out.candidates.push_back({candidate.site, candidate.squared_distance});
-      }
-    }
-    out.face_candidates.push_back(static_cast<Index>(out.candidates.size()));
-  }
+void copy_candidates(const FaceCandidates& candidates, int threads, GeodesicVoronoi& out) {
+  constexpr Index k_chunk = 1024;
+  const Index shared_count = candidates.shared_count(), face_count = candidates.table().face_count();
+  out.candidates.resize(candidates.candidate_count());
+  out.face_candidates.resize(face_count + 1);
+  parallel_for(shared_count + 1, threads, k_chunk, [&](Index shared, int) {
+    const Index first = shared < shared_count ? candidates.first_candidate(shared) : candidates.candidate_count();
+    const auto begin = out.face_candidates.begin();  // the faces up to this one, from behind the shared one before
+    std::fill(begin + (shared > 0 ? candidates.face(shared - 1) + 1 : 0),
+              begin + (shared < shared_count ? candidates.face(shared) : face_count) + 1, first);
+    if (shared == shared_count) return;
+    std::ranges::transform(candidates.candidates(shared), out.candidates.begin() + first,
+                           [](const FaceCandidate& candidate) {
+                             return GeodesicVoronoi::Candidate{candidate.site, candidate.squared_distance};
+                           });
+  });
 }
 
 /// Returns by how much the squared distance to a point of a face is below the interpolation of its values at the
@@ -264,43 +300,36 @@ GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& 
   const VertexRings rings(graph, threads);
   CellCandidates cells(graph, rings, CellLengths::of_ways, threads, cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
-  const CandidatesOfCells candidates(cells);
-  GeodesicVoronoi result =
-      make_diagram(graph.mesh(), CellComplex(candidates, threads, stage.part(0.7, 0.9)), sites, stage);
+  const CandidatesOfCells candidates(cells, threads);
+  GeodesicVoronoi result = make_diagram(graph.mesh(), candidates, sites, threads, stage.part(0.7, 1));
   stage.update(1);
   return result;
 }
 
-GeodesicVoronoi make_diagram(const Mesh& mesh, const CellComplex& complex, const SurfacePoints& sites,
-                             const JobStage& stage) {
-  GeodesicVoronoi result = subdivision(complex, sites, stage);
-  copy_candidates(complex.candidates(), result);
-  for (const SurfacePoint& point : result.points) {
-    result.positions.push_back(position(mesh, point));
-    result.point_distance.push_back(candidate_at(result, mesh, point).distance);
-  }
+GeodesicVoronoi make_diagram(const Mesh& mesh, const FaceCandidates& candidates, const SurfacePoints& sites,
+                             int threads, const JobStage& stage) {
+  GeodesicVoronoi result = subdivision(candidates, sites, threads, stage);
+  copy_candidates(candidates, threads, result);
+  const auto count = static_cast<Index>(result.points.size());
+  result.positions.resize(count);
+  result.point_distance.resize(count);
+  parallel_for(count, threads, 256, [&](Index i, int) {
+    result.positions[i] = position(mesh, result.points[i]);
+    result.point_distance[i] = candidate_at(result, mesh, result.points[i]).distance;
+  });
   return result;
 }
 
-GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
-  GeodesicVoronoi result;
+GeodesicVoronoi subdivision(const FaceCandidates& candidates, const SurfacePoints& sites, int threads,
+                            const JobStage& stage) {
+  GeodesicVoronoi result = divide_faces(candidates, threads, stage.part(0, 0.7));
   result.sites = sites;
-  result.vertex_cell = complex.vertex_site();
-  result.vertex_distance = complex.vertex_distance();
+  result.areas = cell_areas(candidates.table(), result, threads);
   stage.check();
-  result.areas = cell_areas(complex);
-  result.points = complex.added();
-  const std::vector<Segment> segments = find_segments(complex);
+  const std::vector<Segment> segments = find_segments(result, candidates.table().vertex_count, threads);
   stage.check();
   const Chains chains(segments, result.points.size(), result);
-  stage.check();
-  result.face_cell.resize(complex.table().face_count());
-  for (Index f = 0; f < complex.table().face_count(); ++f) result.face_cell[f] = complex.face_site(f);
-  for (const CellComplex::Piece& piece : complex.pieces()) {
-    result.pieces.push_back({piece.face, piece.site, piece.first, piece.count});
-  }
-  result.piece_vertices = complex.loop();
-  result.piece_barycentric = complex.loop_barycentric();
+  stage.update(1);
   return result;
 }
 

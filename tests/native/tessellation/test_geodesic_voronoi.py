@@ -174,12 +174,15 @@ def test_each_component_needs_a_site() -> None:
     check(mesh, sb.geodesic_voronoi(graph, [0, other]))
 
 
-def test_the_same_for_any_number_of_threads() -> None:
-    mesh = sb.Mesh(*meshes.torus(60, 24))
+@pytest.mark.parametrize("count", [60, 3000])
+def test_the_same_for_any_number_of_threads(count: int) -> None:
+    """Also where divided faces fill many blocks."""
+    mesh = sb.Mesh(*meshes.torus(120, 40))
     graph = sb.SaddleVertexGraph(mesh, k=30)
-    sites = random_points(mesh, 60)
-    found = [sb.geodesic_voronoi(graph, sites, threads=threads) for threads in (1, 2, 8)]
+    sites = random_points(mesh, count)
+    found = [sb.geodesic_voronoi(graph, sites, threads=threads) for threads in (1, 2, 5, 8)]
     for other in found[1:]:
+        assert found[0] == other
         assert found[0].edge_points.tobytes() == other.edge_points.tobytes()
         assert found[0].areas.tobytes() == other.areas.tobytes()
         assert found[0].split().triangles.tobytes() == other.split().triangles.tobytes()

@@ -66,7 +66,7 @@ class FaceCandidates {
 /// Candidates of cells that a graph tells. The cells must outlive it.
 class CandidatesOfCells final : public FaceCandidates {
  public:
-  explicit CandidatesOfCells(const CellCandidates& cells);
+  CandidatesOfCells(const CellCandidates& cells, int threads);
   Index label(Index vertex) const override { return cells_.labels().label(graph_.node_of(vertex)); }
   double distance(Index vertex) const override { return cells_.maps().own_distance(graph_.node_of(vertex)); }
 

@@ -23,7 +23,7 @@ class KnownCells {
              int cuda_device);
 
   bool fits(const SaddleVertexGraph& graph, int threads, int cuda_device) const;
-  /// With another density cells stay, and all their moments are found anew. O(F).
+  /// Keeps cells with another density, and finds all their moments anew. O(F).
   void change_density(std::span<const double> density);
   const CellCandidates& candidates() const { return candidates_; }
   /// False before the first `find` and after one that was cancelled.

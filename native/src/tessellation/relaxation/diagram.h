@@ -2,17 +2,18 @@
 
 #include "saddleback/tessellation/centroidal_voronoi.h"
 
-#include "tessellation/cells/cell_complex.h"
+#include "tessellation/cells/face_candidates.h"
 
 namespace saddleback {
 
-/// The cells of a complex of these sites, their boundaries and areas, without what `locate` asks and without positions.
+/// The cells of these sites, their boundaries and areas, without what `locate` asks and without positions.
 /// \throw Cancelled.
-GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
+GeodesicVoronoi subdivision(const FaceCandidates& candidates, const SurfacePoints& sites, int threads,
+                            const JobStage& stage);
 
-/// The public diagram of a cell complex of these sites, on the mesh's faces. \throw Cancelled.
-GeodesicVoronoi make_diagram(const Mesh& mesh, const CellComplex& complex, const SurfacePoints& sites,
-                             const JobStage& stage);
+/// The public diagram of these sites' cells, on the mesh's faces. \throw Cancelled.
+GeodesicVoronoi make_diagram(const Mesh& mesh, const FaceCandidates& candidates, const SurfacePoints& sites,
+                             int threads, const JobStage& stage);
 
 /// geodesic_voronoi as a part of other work; the sites are checked. \throw Cancelled, DeviceError.
 GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, int cuda_device,
