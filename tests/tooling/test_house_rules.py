@@ -152,7 +152,7 @@ SUBFOLDERS = {
     "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],
     "tessellation": ["bisectors", "log_map", "cells", "relaxation", "polygons", "baking"],
     "field": ["linear", "connection", "smoothing"],
-    "distribution": ["check"],
+    "distribution": ["check", "collision"],
 }
 # From the ground up as well: a room includes itself and those before it, but for the headers of the public door.
 ORDER = ["support", "predicates", "mesh", "voronoi2d", "geodesics", "tessellation", "charts", "field"]

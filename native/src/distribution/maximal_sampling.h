@@ -6,6 +6,7 @@
 #include "saddleback/distribution/distribution.h"
 
 #include "distribution/class_densities.h"
+#include "distribution/coverage_test.h"
 #include "distribution/insertion.h"
 
 namespace saddleback::distribution {
@@ -42,22 +43,10 @@ class MaximalSampling {
     bool has_dart = false, is_central = false;  ///< the dart is wanted at the center
     Candidate dart;
   };
-  /// A copy that one in the cell might meet, and how the cell's face lies in its plane.
-  struct Neighbor {
-    Index copy;
-    double away;  ///< from its circumcircle to the cell's center
-    Vec2 origin;
-    Eigen::Matrix2d turn;
-  };
-  using Neighbors = std::vector<Neighbor>;
-
   void make_base_cells(const JobStage& stage);
   double base_radius() const;
-  void flag_borders();
   /// Copies that are wanted by number are looked for where the sample_at_random has missed the room.
   bool searches() const { return options_->maximal || !options_->counts.empty(); }
-  /// How copies bend counts where a proof is wanted; to look for room they are near enough to straight ones.
-  bool proves_bent() const { return options_->maximal && options_->bend; }
   void weigh_kinds();
   DistributionStop sample_at_random(const JobStage& stage);
   double weight_at(Index kind, const SurfacePoint& point) const {
@@ -75,8 +64,7 @@ class MaximalSampling {
   void order_faces();
   void search_cells(const JobStage& stage);
   void round(const JobStage& stage);
-  void look(const OpenCell& open, Index number, Neighbors& near, Look& look) const;
-  void find_neighbors(const Cell& cell, const CellView& view, Neighbors& near) const;
+  void look(const OpenCell& open, Index number, CoverageTest::Neighbors& near, Look& look) const;
   Index draw_kind(std::uint64_t kinds, const SurfacePoint& point, double chance) const;
   double drawn_scale(Index kind, const SurfacePoint& point, double chance) const {
     const double size = rules_->size_at(rules_->kinds()[kind].shape, point);
@@ -84,23 +72,6 @@ class MaximalSampling {
   }
   void suspect(Index face);
   void throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const;
-  std::uint64_t centrally_covered(const Cell& cell, const CellView& view, std::uint64_t kinds,
-                                  const Neighbors& near) const;
-  /// Says what is known of all placements of a kind in a cell.
-  struct Cover {
-    bool is_whole = false;    ///< each meets a copy, or the border
-    bool is_central = false;  ///< the one at the center does
-    double motion = 0;        ///< by how much they differ
-  };
-  Cover cover(const CellView& view, const Copy& copy, const Neighbors& near) const;
-  Cover bent_cover(const Cell& cell, const CellView& view, Index kind, const Copy& copy, double tolerance) const;
-  bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbors& near) const;
-  bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
-  bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found, const Pose& pose,
-                  Index other) const;
-  double depth_at(const SurfacePoint& point) const;
-  bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion, const Vec2& point) const;
-  bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
   double order(const SurfacePoint& point, std::uint64_t key) const;
   double tolerance(const CellView& view, const Kind& kind) const {
     const double radius = rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
@@ -114,17 +85,16 @@ class MaximalSampling {
   const PlacingRules* rules_;
   Insertion* insertion_;
   const DistributionOptions* options_;
+  CoverageTest coverage_;
   std::vector<OpenCell> open_;
   std::vector<std::uint64_t> face_order_;  ///< keys of their places along a curve
   Index next_face_ = 0;                    ///< whose cells have not been opened yet
   std::vector<double> front_;              ///< per vertex, for packing
-  std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
   /// Flags of the faces near a place where shapes cannot be laid. Cells there that are small enough to be given up are
   /// probed, as their parts would be one by one.
   std::vector<std::uint8_t> suspected_;
-  std::vector<double> forbidden_depth_;  ///< per vertex: at least so far within what is forbidden
-  std::vector<double> kind_weights_;     ///< by which kinds are drawn, where densities are even
-  double searched_area_ = 0;             ///< where some kind may be centered
+  std::vector<double> kind_weights_;  ///< by which kinds are drawn, where densities are even
+  double searched_area_ = 0;          ///< where some kind may be centered
   Certificate certificate_;
   std::int64_t inserted_in_round_ = 0;
   double least_stuck_ = 0;  ///< cells so small are given up where shapes cannot be laid

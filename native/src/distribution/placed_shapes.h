@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "distribution/collision_shape.h"
+#include "distribution/collision/collision_shape.h"
 #include "distribution/face_buckets.h"
 #include "distribution/flat_faces.h"
 #include "distribution/local_layout.h"

@@ -10,9 +10,9 @@
 #include "saddleback/support/one_or_each.h"
 
 #include "distribution/cell.h"
-#include "distribution/collision_shape.h"
+#include "distribution/collision/collision_shape.h"
+#include "distribution/collision/overlap.h"
 #include "distribution/flat_faces.h"
-#include "distribution/overlap.h"
 #include "distribution/placed_shapes.h"
 #include "shape_mapping/center_line.h"
 

@@ -1,4 +1,4 @@
-#include "distribution/overlap.h"
+#include "distribution/collision/overlap.h"
 
 #include <algorithm>
 

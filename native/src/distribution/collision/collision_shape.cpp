@@ -1,4 +1,4 @@
-#include "distribution/collision_shape.h"
+#include "distribution/collision/collision_shape.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "distribution/collision_shape.h"
+#include "distribution/collision/collision_shape.h"
 
 namespace saddleback::distribution {
 
