@@ -5,21 +5,23 @@
 #include "distribution/insertion.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "saddleback/error.h"
 
+#include "mesh/tables/key_order.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback::distribution {
 namespace {
 
 constexpr std::size_t k_least_batch = 8, k_first_batch = 64, k_largest_batch = 4096;
-constexpr std::size_t k_sorted_at_once = 1 << 18;  ///< candidates, more than a batch
+constexpr Index k_sorted_at_once = 1 << 14;
 /// Candidates that a thread takes at a time: fewer are not worth waking it up for.
-constexpr Index k_share = 32;
+constexpr Index k_share = 8;
 
 Outcome outcome_of(MapFailure failure) {
   switch (failure) {
@@ -126,14 +128,15 @@ void Insertion::attempt(const Candidate& candidate, Attempt& attempt, int thread
   }
   auto& mapper = mappers_[thread];
   if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
-  test(attempt, *mapper);
+  map(attempt, *mapper);
   if (lying && are_apart_ && attempt.outcome != Outcome::laid) {  // too near to the rim for the gap around it
     attempt.copy = rules_->bare_copy(*lying);
-    test(attempt, *mapper);
+    map(attempt, *mapper);
   }
 }
 
-void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
+/// Maps the copy, and tests it.
+void Insertion::map(Attempt& attempt, OutlineMapper& mapper) const {
   Placement placement = attempt.copy.placement;
   const std::optional<CenterLine> line = rules_->line(placement);
   placement.mirrored = false;  // the body is
@@ -142,26 +145,31 @@ void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
       line ? mapper.map_along(loops, placement, *line, attempt.outline) : mapper.map(loops, placement, attempt.outline);
   attempt.outcome = outcome_of(failure);
   if (attempt.outcome != Outcome::laid) return;
-  const auto is_forbidden = [&](Index face) { return !forbidden_.empty() && forbidden_[face]; };
-  const bool is_asked = !attempt.is_lying || !are_apart_;
-  if (is_asked && std::any_of(attempt.outline.faces.begin(), attempt.outline.faces.end(), is_forbidden))
-    attempt.outcome = Outcome::forbidden;
-  else if (is_asked && !settled_.is_free(attempt.copy, attempt.outline, mapper))
-    attempt.outcome = Outcome::collision;
-  if (attempt.outcome != Outcome::laid) return;
   const ShapeMap& plane = mapper.plane();
   // Along a curve that the copy does not point along its plane is turned.
   const auto place_of = [&](Index vertex) -> Vec2 {
     return line ? Vec2(placement.scale * mapper.given(plane.coordinates(vertex))) : plane.coordinates(vertex);
   };
-  attempt.plane.clear();
-  for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, place_of(vertex)});
   attempt.faces.clear();
   for (const Index face : attempt.outline.faces) {
     const Triangle& corners = mesh_->triangles()[face];
     const Vec2 origin = place_of(corners[0]), e1 = place_of(corners[1]) - origin, e2 = place_of(corners[2]) - origin;
     attempt.faces.push_back({face, origin, rules_->flat().turn_to(face, e1, e2)});
   }
+  test(attempt);
+  if (attempt.outcome != Outcome::laid) return;
+  attempt.plane.clear();
+  for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, place_of(vertex)});
+}
+
+/// Tells whether a copy that has been mapped has room among those that lie there now.
+void Insertion::test(Attempt& attempt) const {
+  const auto is_forbidden = [&](Index face) { return !forbidden_.empty() && forbidden_[face]; };
+  if (attempt.is_lying && are_apart_) return;
+  if (std::any_of(attempt.outline.faces.begin(), attempt.outline.faces.end(), is_forbidden))
+    attempt.outcome = Outcome::forbidden;
+  else if (!settled_.is_free(attempt.copy, attempt.outline, attempt.faces))
+    attempt.outcome = Outcome::collision;
 }
 
 void Insertion::commit(Attempt& attempt) {
@@ -169,10 +177,7 @@ void Insertion::commit(Attempt& attempt) {
     attempt.outcome = Outcome::not_wanted;
   if (attempt.outcome == Outcome::laid) {
     const auto& faces = attempt.outline.faces;
-    if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) {
-      if (!mappers_[0]) mappers_[0] = std::make_unique<OutlineMapper>(*mesh_);
-      test(attempt, *mappers_[0]);
-    }
+    if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) test(attempt);
   }
   if (attempt.outcome == Outcome::laid) {
     attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
@@ -200,7 +205,7 @@ void Insertion::keep(std::span<const Placement> lying, bool are_apart, const Job
                           .scale = copy.scale,
                           .is_thorough = true,
                           .lying = &copy});
-  const std::vector<Outcome> outcomes = insert(std::move(candidates), stage);
+  const std::vector<Outcome> outcomes = insert(candidates, stage);
   const auto is_laid = [](Outcome outcome) { return outcome == Outcome::laid; };
   const auto refused = std::find_if_not(outcomes.begin(), outcomes.end(), is_laid);
   if (refused != outcomes.end())
@@ -208,55 +213,41 @@ void Insertion::keep(std::span<const Placement> lying, bool are_apart, const Job
 }
 
 void Insertion::make_pending_known() {
-  // A few at a time: what is about all of them is much more than what is known about each.
-  constexpr Index k_at_once = 64;
-  std::vector<std::vector<FacePlace>> places(k_at_once);
-  for (std::size_t begin = 0; begin < pending_.size(); begin += k_at_once) {
-    const auto count = static_cast<Index>(std::min<std::size_t>(k_at_once, pending_.size() - begin));
-    parallel_for(count, threads_, 4, [&](Index i, int thread) {
-      auto& surroundings = surroundings_[thread];
-      if (!surroundings) surroundings = std::make_unique<LocalLayout>(*mesh_, rules_->flat());
-      const Pending& pending = pending_[begin + i];
-      places[i] = surroundings->about(pending.plane, pending.faces, settled_.reach(settled_.copies()[pending.copy]));
-    });
-    for (Index i = 0; i < count; ++i) settled_.add_places(pending_[begin + i].copy, places[i], false);
-  }
+  parallel_for(static_cast<Index>(pending_.size()), threads_, 1, [&](Index i, int thread) {
+    auto& surroundings = surroundings_[thread];
+    if (!surroundings) surroundings = std::make_unique<LocalLayout>(*mesh_, rules_->flat());
+    const auto& [copy, plane, faces] = pending_[i];
+    settled_.add_places(copy, surroundings->about(plane, faces, settled_.reach(settled_.copies()[copy])), false);
+  });
   pending_.clear();
 }
 
-std::vector<Outcome> Insertion::insert(std::vector<Candidate> candidates, const JobStage& stage,
+std::vector<Outcome> Insertion::insert(std::span<const Candidate> candidates, const JobStage& stage,
                                        std::span<const std::uint64_t> face_order) {
+  const auto count = static_cast<Index>(candidates.size());
   std::vector<Outcome> outcomes(candidates.size(), Outcome::not_wanted);
-  std::vector<Index> order(candidates.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto comes_first = [&](Index a, Index b) {
-    return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
-  };
-  std::size_t size = k_first_batch, sorted = 0;
+  std::vector<std::uint64_t> keys(candidates.size());
+  // As numbers, the bits of what is not negative are in the same order.
+  parallel_for(count, threads_, k_sorted_at_once,
+               [&](Index i, int) { keys[i] = std::bit_cast<std::uint64_t>(candidates[i].key + 0.0); });
+  const std::vector<Index> order = order_of(keys, threads_, stage);
+  std::vector<Index> turns;
+  std::size_t size = k_first_batch;
   const auto goes_on = [&] { return candidates[0].lying || (is_any_wanted() && !is_hopeless()); };
   for (std::size_t begin = 0, end; begin < order.size() && goes_on(); begin = end) {
     stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
     end = std::min(order.size(), begin + size);
-    if (end > sorted) {  // a part at a time: sorting millions could not be stopped
-      const auto from = order.begin() + static_cast<std::ptrdiff_t>(sorted);
-      sorted = std::min(order.size(), sorted + k_sorted_at_once);
-      const auto to = order.begin() + static_cast<std::ptrdiff_t>(sorted);
-      if (to != order.end()) std::nth_element(from, to, order.end(), comes_first);
-      std::sort(from, to, comes_first);
-    }
     ++batch_;
     attempts_.resize(std::max(attempts_.size(), end - begin));
-    std::vector<Index> turns(end - begin);
-    std::iota(turns.begin(), turns.end(), 0);
     if (!face_order.empty()) {
-      std::sort(turns.begin(), turns.end(), [&](Index a, Index b) {
-        return face_order[candidates[order[begin + a]].center.face] <
-               face_order[candidates[order[begin + b]].center.face];
-      });
+      keys.resize(end - begin);
+      for (std::size_t i = begin; i < end; ++i) keys[i - begin] = face_order[candidates[order[i]].center.face];
+      turns = order_of(keys, threads_);
     }
     parallel_for(static_cast<Index>(end - begin), threads_, k_share, [&](Index i, int thread) {
       stage.check();
-      attempt(candidates[order[begin + turns[i]]], attempts_[turns[i]], thread);
+      const Index turn = turns.empty() ? i : turns[i];
+      attempt(candidates[order[begin + turn]], attempts_[turn], thread);
     });
     std::size_t laid = 0, in_vain = 0;  // in vain: mapped, and turned away for another of the batch
     for (std::size_t i = begin; i < end; ++i) {

@@ -12,9 +12,9 @@
 namespace saddleback::distribution {
 
 struct Candidate {
-  double key;  ///< the smallest comes first
+  double key;  ///< the smallest comes first; not negative
   Index kind;
-  Index cell;  ///< of the caller's, also what comes first among equal keys
+  Index cell;  ///< of the caller's
   SurfacePoint center;
   double scale;
   /// Says that the candidate is not to be turned away by what is only foreseen: its outline is tested.
@@ -44,10 +44,11 @@ class Insertion {
   /// wanted.
   double share(Index shape) const;
 
-  /// Lays those that find room, in the order of their keys. Returns what became of each, in the order given. Stops as
-  /// soon as every count is met, or nothing can be hoped for. Those tried at a time come in the order of their faces
-  /// where that is given: neighbors find the same part of the mesh in the cache. It changes no result.
-  std::vector<Outcome> insert(std::vector<Candidate> candidates, const JobStage& stage,
+  /// Lays those that find room, in the order of their keys, of equal ones in the order given. Returns what became of
+  /// each, in the order given. Stops as soon as every count is met, or nothing can be hoped for. Those tried at a time
+  /// come in the order of their faces where that is given: neighbors find the same part of the mesh in the cache. It
+  /// changes no result.
+  std::vector<Outcome> insert(std::span<const Candidate> candidates, const JobStage& stage,
                               std::span<const std::uint64_t> face_order = {});
 
   /// Lays copies that lie there already. \throw InputError naming the first that cannot be, or that meets one before
@@ -80,7 +81,8 @@ class Insertion {
     return !shares_.empty() && inserted_[shape] >= k_slack * shares_[shape] * (inserted_in_all_ + 1) + 1;
   }
   void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
-  void test(Attempt& attempt, OutlineMapper& mapper) const;
+  void map(Attempt& attempt, OutlineMapper& mapper) const;
+  void test(Attempt& attempt) const;
   void commit(Attempt& attempt);
   void make_pending_known();
 

@@ -7,16 +7,20 @@
 #include "distribution/maximal_sampling.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "saddleback/support/large_array.h"
 
 #include "distribution/edge_distances.h"
 #include "mesh/tables/hilbert.h"
 #include "mesh/tables/key_order.h"
 #include "mesh/tables/outgoing.h"
 #include "support/random_numbers.h"
+#include "support/threads/appended.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback::distribution {
@@ -33,6 +37,8 @@ constexpr double k_most_drops = 1e6;  ///< on a face
 /// Bounds how many are held at a time; of shapes that are tiny beside the surface there would be more than memory
 /// holds.
 constexpr std::size_t k_drops_held = 4'000'000, k_most_cells = 1 << 20;
+/// Faces, or cells, that a thread takes at a time.
+constexpr Index k_together = 2048;
 /// A certificate that leaves more than this share of the surface open is not called one.
 constexpr double k_unproven = 0.5;
 /// Cells smaller than this share of that square get fewer darts.
@@ -172,31 +178,35 @@ void MaximalSampling::draw_candidates(Index face, int try_batch, double per_area
 /// Tries them in the order of their keys, as many at a time as are held.
 void MaximalSampling::try_batch(int number, double per_area, const JobStage& stage) {
   constexpr std::size_t k_bins = 4096;
-  const auto for_each = [&](auto&& visit) {
-    for (Index f = 0; f < mesh_->face_count(); ++f) {
-      if (f % 4096 == 0) stage.check();
-      draw_candidates(f, number, per_area, stage, visit);
-    }
-  };
+  const auto draw = [&](Index face, auto&& visit) { draw_candidates(face, number, per_area, stage, visit); };
+  const Index face_count = mesh_->face_count();
+  std::vector<double> expected_of((static_cast<std::size_t>(face_count) + k_together - 1) / k_together, 0);
+  parallel_for(face_count, options_->threads, k_together,
+               [&](Index f, int) { expected_of[f / k_together] += 1 + mean_drops(f, per_area); });
   // Few are all held at once, in one bin.
-  double expected = mesh_->face_count();
-  for (Index f = 0; f < mesh_->face_count(); ++f) expected += mean_drops(f, per_area);
+  const double expected = std::accumulate(expected_of.begin(), expected_of.end(), 0.0);
   const std::size_t bin_count = expected < static_cast<double>(k_drops_held) ? 1 : k_bins;
   const auto bin_of = [&](double key) {
     return static_cast<std::size_t>(std::clamp(key, 0.0, 1.0) * static_cast<double>(bin_count - 1));
   };
   std::vector<std::size_t> bins(bin_count, 1);
-  if (bin_count > 1) for_each([&](double key, std::uint64_t, const SurfacePoint&) { ++bins[bin_of(key)]; });
+  const auto count_drop = [&](double key, std::uint64_t, const SurfacePoint&) {
+    std::atomic_ref(bins[bin_of(key)]).fetch_add(1, std::memory_order_relaxed);
+  };
+  if (bin_count > 1)
+    parallel_for(face_count, options_->threads, k_together, [&](Index f, int) { draw(f, count_drop); });
   const double count = static_cast<double>(std::accumulate(bins.begin(), bins.end(), std::size_t{0}));
   std::vector<Candidate> candidates;
   for (std::size_t begin = 0, end, done = 0; begin < bin_count && insertion_->is_any_wanted(); begin = end) {
     std::size_t held = bins[begin];
     for (end = begin + 1; end < bin_count && held + bins[end] <= k_drops_held;) held += bins[end++];
     candidates.clear();
-    for_each([&](double order, std::uint64_t key, const SurfacePoint& point) {
-      if (bin_of(order) < begin || bin_of(order) >= end) return;
-      const Index kind = draw_kind(~std::uint64_t{0}, point, uniform(key, 0));
-      candidates.push_back({order, kind, point.face, point, drawn_scale(kind, point, uniform(key, 4))});
+    append_in_order(candidates, face_count, options_->threads, k_together, [&](Index face, auto& found) {
+      draw(face, [&](double order, std::uint64_t key, const SurfacePoint& point) {
+        if (bin_of(order) < begin || bin_of(order) >= end) return;
+        const Index kind = draw_kind(~std::uint64_t{0}, point, uniform(key, 0));
+        found.push_back({order, kind, point.face, point, drawn_scale(kind, point, uniform(key, 4))});
+      });
     });
     const auto share = [&](std::size_t drop) { return static_cast<double>(drop) / count; };
     insertion_->insert(candidates, stage.part(share(done), share(done + held)));
@@ -227,40 +237,46 @@ DistributionStop MaximalSampling::sample_at_random(const JobStage& stage) {
   return DistributionStop::tired;
 }
 
-/// Throws darts into every cell whose center seems free, unless that is for numbers alone; in others by their area.
-void MaximalSampling::throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const {
-  const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
-  const Index kind = draw_kind(look.free ? look.free : look.open, view.center, uniform(key, 0));
-  if (kind == k_none) return;
-  rules_->see(open.cell, rules_->kinds()[kind].shape, view);
-  double along = uniform(key, 1), up = uniform(key, 2);
-  if (along + up > 1) along = 1 - along, up = 1 - up;
-  const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
-  const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
-  const double least = look.free ? k_free_area : k_dart_area;
-  const bool may_be_lost = options_->maximal && view.radius < least_stuck_;
-  const bool is_suspected = may_be_lost && 2 * view.radius < least_stuck_ && suspected_[open.cell.face];
-  const bool is_thinned = (!look.free && !is_suspected) || !options_->maximal;
-  if (is_thinned && area < uniform(key, 5) * least * radius * radius) return;
-  if (look.free || is_suspected) {
-    // The first cells that may be given up learn whether they have to be: their parts would ask one by one.
-    const bool is_probe = is_suspected || (may_be_lost && 2 * view.radius >= least_stuck_);
-    const double scale = view.size * rules_->smallest_factor();
-    look.is_central = true;
-    if (open.tried.kind == kind) return;
-    look.has_dart = true;
-    look.dart = {order(view.center, key), kind, number, view.center, scale, false, is_probe};
-    return;
-  }
-  const SurfacePoint point = point_at(open.cell.face, open.cell.weights(along, up));
-  if (weight_at(kind, point) <= 0) return;  // on an edge where the density is 0
-  look.has_dart = true;
-  look.dart = {order(point, key), kind, number, point, drawn_scale(kind, point, uniform(key, 4))};
+std::uint64_t MaximalSampling::dart_key(const Cell& cell) const {
+  return mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, cell.key());
 }
 
-void MaximalSampling::look(const OpenCell& open, Index number, CoverageTest::Neighbors& near, Look& look) const {
+SurfacePoint MaximalSampling::thrown_point(const Cell& cell) const {
+  const std::uint64_t key = dart_key(cell);
+  double along = uniform(key, 1), up = uniform(key, 2);
+  if (along + up > 1) along = 1 - along, up = 1 - up;
+  return point_at(cell.face, cell.weights(along, up));
+}
+
+/// Throws darts into every cell whose center seems free, unless that is for numbers alone; in others by their area.
+void MaximalSampling::throw_dart(const OpenCell& open, std::uint64_t free, CellView& view, Look& look) const {
+  const std::uint64_t key = dart_key(open.cell);
+  const Index kind = draw_kind(free ? free : look.open, view.center, uniform(key, 0));
+  if (kind == k_none) return;
+  rules_->see(open.cell, rules_->kinds()[kind].shape, view);
+  const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
+  const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
+  const double least = free ? k_free_area : k_dart_area;
+  const bool may_be_lost = options_->maximal && view.radius < least_stuck_;
+  const bool is_suspected = may_be_lost && 2 * view.radius < least_stuck_ && suspected_[open.cell.face];
+  const bool is_thinned = (!free && !is_suspected) || !options_->maximal;
+  if (is_thinned && area < uniform(key, 5) * least * radius * radius) return;
+  if (free || is_suspected) {
+    // The first cells that may be given up learn whether they have to be: their parts would ask one by one.
+    look.is_probe = is_suspected || (may_be_lost && 2 * view.radius >= least_stuck_);
+    look.is_central = true;
+    if (open.tried.kind != kind) look.dart = kind;
+  } else if (weight_at(kind, thrown_point(open.cell)) > 0) {  // 0: on an edge where the density is
+    look.dart = kind;
+  }
+}
+
+MaximalSampling::Look MaximalSampling::look(const OpenCell& open, CoverageTest::Neighbors& near) const {
   CellView view = rules_->view(open.cell);
-  look.tests = std::popcount(open.kinds);
+  Look look{};
+  look.dart = k_none;
+  look.tests = static_cast<std::int16_t>(std::popcount(open.kinds));
+  std::uint64_t free = 0;  // kinds of which a copy at the center seems to have room
   coverage_.find_neighbors(open.cell, view, near);
   const std::uint64_t kinds = open.kinds & ~coverage_.centrally_covered(open.cell, view, open.kinds, near);
   for (std::uint64_t rest = kinds; rest; rest &= rest - 1) {
@@ -278,14 +294,41 @@ void MaximalSampling::look(const OpenCell& open, Index number, CoverageTest::Nei
         look.is_lost = true;
       else
         look.open |= bit;
-      if (!cover.is_central) look.free |= bit;
+      if (!cover.is_central) free |= bit;
     } else if (open.tried.is(kind, Outcome::collision) || cover.is_central) {
       ++look.leaves;
     } else {
       look.asked |= bit;
     }
   }
-  if (look.open) throw_dart(open, view, number, look);
+  if (look.open) throw_dart(open, free, view, look);
+  return look;
+}
+
+/// The smallest copy at the center of an open cell.
+Candidate MaximalSampling::central_candidate(Index number, Index kind, std::uint64_t key) const {
+  const Cell& cell = open_[number].cell;
+  const SurfacePoint center = point_at(cell.face, cell.center());
+  const double size = rules_->size_at(rules_->kinds()[kind].shape, cell.face, cell.center());
+  return {order(center, key), kind, number, center, rules_->smallest_factor() * size};
+}
+
+/// The copies that are to be tried after looking at an open cell.
+void MaximalSampling::collect_candidates(Index number, const Look& look, std::vector<Candidate>& candidates) const {
+  const Cell& cell = open_[number].cell;
+  if (look.dart != k_none && look.is_central) {
+    candidates.push_back(central_candidate(number, look.dart, dart_key(cell)));
+    candidates.back().is_probe = look.is_probe;
+  } else if (look.dart != k_none) {
+    const std::uint64_t key = dart_key(cell);
+    const SurfacePoint point = thrown_point(cell);
+    candidates.push_back({order(point, key), look.dart, number, point, drawn_scale(look.dart, point, uniform(key, 4))});
+  }
+  for (std::uint64_t rest = look.asked; rest; rest &= rest - 1) {
+    const auto kind = static_cast<Index>(std::countr_zero(rest));
+    candidates.push_back(central_candidate(number, kind, mixed(options_->seed, cell.key())));
+    candidates.back().is_thorough = true;
+  }
 }
 
 /// Finds the rims of places where shapes cannot be laid less finely where many candidates fell on such places.
@@ -317,35 +360,27 @@ void MaximalSampling::lose(const Cell& cell) {
 
 void MaximalSampling::round(const JobStage& stage) {
   weigh_kinds();
-  std::vector<Look> looks(open_.size());
+  const auto count = static_cast<Index>(open_.size());
+  const int threads = thread_count(options_->threads);
+  LargeArray<Look> looks(open_.size());
   const JobStage looking = stage.part(0, 0.5);
-  std::vector<CoverageTest::Neighbors> near(static_cast<std::size_t>(thread_count(options_->threads)));
-  std::vector<std::uint64_t> keys;
-  keys.reserve(open_.size());
-  for (const OpenCell& open : open_) keys.push_back(face_order_[open.cell.face]);
-  const std::vector<Index> turns = order_of(keys, options_->threads, looking);
-  parallel_for(static_cast<Index>(open_.size()), options_->threads, 64, [&](Index k, int thread) {
-    if (k % 1024 == 0) looking.update(static_cast<double>(k) / static_cast<double>(open_.size()));
-    look(open_[turns[k]], turns[k], near[thread], looks[turns[k]]);
+  std::vector<CoverageTest::Neighbors> near(static_cast<std::size_t>(threads));
+  std::vector<std::uint64_t> keys(open_.size());
+  parallel_for(count, threads, k_together, [&](Index i, int) { keys[i] = face_order_[open_[i].cell.face]; });
+  const std::vector<Index> turns = order_of(keys, threads, looking);
+  parallel_for(count, threads, 64, [&](Index k, int thread) {
+    if (k % 1024 == 0) looking.update(static_cast<double>(k) / static_cast<double>(count));
+    looks[turns[k]] = look(open_[turns[k]], near[thread]);
   });
-  std::vector<Candidate> candidates;
-  for (Index i = 0; i < static_cast<Index>(open_.size()); ++i) {
-    if (i % 4096 == 0) stage.check();
-    const Look& found = looks[i];
-    certificate_.cells += found.tests;
-    certificate_.leaves += found.leaves;
-    if (found.is_lost) lose(open_[i].cell);
-    if (found.has_dart) candidates.push_back(found.dart);
-    for (std::uint64_t rest = found.asked; rest; rest &= rest - 1) {
-      const auto kind = static_cast<Index>(std::countr_zero(rest));
-      const Cell& cell = open_[i].cell;
-      const SurfacePoint center = point_at(cell.face, cell.center());
-      const std::uint64_t key = mixed(options_->seed, cell.key());
-      const double scale =
-          rules_->smallest_factor() * rules_->size_at(rules_->kinds()[kind].shape, cell.face, cell.center());
-      candidates.push_back({order(center, key), kind, i, center, scale, true});
-    }
+  for (Index i = 0; i < count; ++i) {
+    certificate_.cells += looks[i].tests;
+    certificate_.leaves += looks[i].leaves;
+    if (looks[i].is_lost) lose(open_[i].cell);
   }
+  stage.check();
+  std::vector<Candidate> candidates;
+  append_in_order(candidates, count, threads, k_together,
+                  [&](Index i, std::vector<Candidate>& found) { collect_candidates(i, looks[i], found); });
   const std::vector<Outcome> outcomes = insertion_->insert(candidates, stage.part(0.5, 1), face_order_);
   std::vector<std::uint8_t> is_stuck(open_.size(), 0);
   inserted_in_round_ = 0;
@@ -366,19 +401,20 @@ void MaximalSampling::round(const JobStage& stage) {
       if (is_odd(outcome)) lose(open_[candidate.cell].cell);
     }
   }
-  std::vector<OpenCell> next;
-  for (std::size_t i = 0; i < open_.size(); ++i) {
-    if (i % 4096 == 0) stage.check();
-    if (!looks[i].open) continue;
+  stage.check();
+  const auto is_given_up = [&](Index i) {
     const bool is_known_stuck = looks[i].is_central && is_odd(open_[i].tried.outcome);
-    if ((is_stuck[i] || is_known_stuck) && rules_->view(open_[i].cell).radius < least_stuck_) {
-      lose(open_[i].cell);
-      continue;
-    }
-    const std::array<Cell, 4> parts = open_[i].cell.children();
-    for (const Cell& part : parts) next.push_back({part, looks[i].open});
-    next.back().tried = open_[i].tried;  // the middle one has the same center
-  }
+    return looks[i].open && (is_stuck[i] || is_known_stuck) && rules_->view(open_[i].cell).radius < least_stuck_;
+  };
+  std::vector<OpenCell> next;
+  append_in_order(next, count, threads, k_together, [&](Index i, std::vector<OpenCell>& found) {
+    is_stuck[i] = is_given_up(i);
+    if (is_stuck[i] || !looks[i].open) return;
+    for (const Cell& part : open_[i].cell.children()) found.push_back({part, looks[i].open});
+    found.back().tried = open_[i].tried;  // the middle one has the same center
+  });
+  for (Index i = 0; i < count; ++i)
+    if (is_stuck[i]) lose(open_[i].cell);
   open_ = std::move(next);
   ++rounds_;
 }
@@ -398,8 +434,9 @@ void MaximalSampling::search_cells(const JobStage& stage) {
 /// Scans list their faces in any order; along a curve neighbors follow each other.
 void MaximalSampling::order_faces() {
   const HilbertCurve curve(mesh_->positions());
-  face_order_.reserve(static_cast<std::size_t>(mesh_->face_count()));
-  for (Index f = 0; f < mesh_->face_count(); ++f) face_order_.push_back(curve.key(mesh_->position(mesh_->from(3 * f))));
+  face_order_.resize(static_cast<std::size_t>(mesh_->face_count()));
+  parallel_for(mesh_->face_count(), options_->threads, k_together,
+               [&](Index f, int) { face_order_[f] = curve.key(mesh_->position(mesh_->from(3 * f))); });
 }
 
 DistributionStop MaximalSampling::run(const JobStage& stage) {

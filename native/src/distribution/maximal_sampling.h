@@ -33,16 +33,17 @@ class MaximalSampling {
     std::uint64_t kinds;
     Tried tried = {};  ///< at the cell's center, as a part of another cell
   };
-  /// Holds what came of looking at a cell.
+  /// Holds what came of looking at a cell. Plain, as there are many and all threads write theirs first.
   struct Look {
-    std::uint64_t open = 0;   ///< kinds that may fit, to be split
-    std::uint64_t free = 0;   ///< those of them of which a copy at the center seems to have room
-    std::uint64_t asked = 0;  ///< kinds of which a copy at the center is to be tried
-    std::int64_t tests = 0, leaves = 0;
-    bool is_lost = false;                       ///< some kind cannot be decided
-    bool has_dart = false, is_central = false;  ///< the dart is wanted at the center
-    Candidate dart;
+    std::uint64_t open;   ///< kinds that may fit, to be split
+    std::uint64_t asked;  ///< kinds of which a copy at the center is to be tried
+    Index dart;           ///< a kind to be tried somewhere, or none
+    std::int16_t tests, leaves;
+    bool is_lost;     ///< some kind cannot be decided
+    bool is_central;  ///< the dart is wanted at the center
+    bool is_probe;
   };
+
   void make_base_cells(const JobStage& stage);
   double base_radius() const;
   /// Copies that are wanted by number are looked for where the sample_at_random has missed the room.
@@ -64,14 +65,18 @@ class MaximalSampling {
   void order_faces();
   void search_cells(const JobStage& stage);
   void round(const JobStage& stage);
-  void look(const OpenCell& open, Index number, CoverageTest::Neighbors& near, Look& look) const;
+  Look look(const OpenCell& open, CoverageTest::Neighbors& near) const;
   Index draw_kind(std::uint64_t kinds, const SurfacePoint& point, double chance) const;
   double drawn_scale(Index kind, const SurfacePoint& point, double chance) const {
     const double size = rules_->size_at(rules_->kinds()[kind].shape, point);
     return size * (options_->smallest + (options_->largest - options_->smallest) * chance);
   }
   void suspect(Index face);
-  void throw_dart(const OpenCell& open, CellView& view, Index number, Look& look) const;
+  void throw_dart(const OpenCell& open, std::uint64_t free, CellView& view, Look& look) const;
+  std::uint64_t dart_key(const Cell& cell) const;
+  SurfacePoint thrown_point(const Cell& cell) const;
+  Candidate central_candidate(Index number, Index kind, std::uint64_t key) const;
+  void collect_candidates(Index number, const Look& look, std::vector<Candidate>& candidates) const;
   double order(const SurfacePoint& point, std::uint64_t key) const;
   double tolerance(const CellView& view, const Kind& kind) const {
     const double radius = rules_->smallest_factor() * view.size * rules_->shape_radius(kind);

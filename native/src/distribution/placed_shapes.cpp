@@ -1,7 +1,9 @@
 #include "distribution/placed_shapes.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "predicates/planar_loops.h"
 
@@ -38,15 +40,18 @@ PlacedShapes::PlacedShapes(const Mesh& mesh, const FlatFaces& flat, double least
       buckets_(mesh, least + most),
       start_heads_(static_cast<std::size_t>(mesh.face_count()), k_none),
       piece_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
-      place_heads_(static_cast<std::size_t>(buckets_.count()) * rings_, k_none) {}
+      place_heads_(static_cast<std::size_t>(buckets_.count()) * rings_, k_none) {
+  // So that the list of blocks does not move while threads look at it.
+  places_.reserve(static_cast<std::size_t>(std::numeric_limits<Index>::max() / k_block) + 1);
+}
 
-bool PlacedShapes::is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
+bool PlacedShapes::is_free(const Copy& copy, const SurfaceOutline& outline, std::span<const FacePlace> faces) const {
   for (const OutlinePiece& piece : outline.pieces)
     if (meets(piece)) return false;
   // No outlines meet: one point of each loop tells the rest.
   for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop)
     if (is_within_another(outline.pieces[outline.loop_begins[loop]])) return false;
-  return !holds_another(copy, outline, mapper);
+  return !holds_another(copy, faces);
 }
 
 bool PlacedShapes::meets(const OutlinePiece& piece) const {
@@ -71,15 +76,11 @@ bool PlacedShapes::is_within_another(const OutlinePiece& piece) const {
 }
 
 /// Tells whether another copy lies within: it then begins in a face that the outline holds.
-bool PlacedShapes::holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
-  const ShapeMap& plane = mapper.plane();
-  for (const Index face : outline.faces)
+bool PlacedShapes::holds_another(const Copy& copy, std::span<const FacePlace> faces) const {
+  for (const auto& [face, origin, turn] : faces)
     for (Index i = start_heads_[face]; i != k_none; i = starts_[i].next) {
-      const Triangle& corners = mesh_->triangles()[face];
-      const Vec2& weights = starts_[i].weights;
-      const Vec2 place = plane.coordinates(corners[0]) * (1 - weights.x() - weights.y()) +
-                         plane.coordinates(corners[1]) * weights.x() + plane.coordinates(corners[2]) * weights.y();
-      if (copy.body->shape.contains(mapper.given(place))) return true;
+      const Vec2 place = origin + turn * flat_->place(face, starts_[i].weights);
+      if (copy.body->shape.contains(place / copy.placement.scale)) return true;
     }
   return false;
 }
@@ -98,14 +99,10 @@ void PlacedShapes::add(const Copy& copy, const SurfaceOutline& outline) {
     });
 }
 
-void PlacedShapes::add_place(const FacePlace& place, Index number, Index& head) {
-  if (place_count_ % k_block == 0) places_.push_back(std::make_unique_for_overwrite<Place[]>(k_block));
-  places_.back()[place_count_ % k_block] = {place.turn.cast<float>(), place.origin.cast<float>(), number, head};
-  head = place_count_++;
-}
-
 void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places, bool are_touched) {
   const double radius = copies_[copy].radius();
+  std::vector<std::pair<std::size_t, const FacePlace*>> found;
+  found.reserve(places.size());
   for (const FacePlace& place : places) {
     const Vec2 e1 = place.turn * flat_->place(place.face, {1, 0}), e2 = place.turn * flat_->place(place.face, {0, 1});
     Vec2 low = Vec2::Zero(), high = Vec2::Ones();
@@ -113,10 +110,25 @@ void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places, 
     buckets_.visit_cells(place.face, low, high, [&](Index bucket, const Vec2& middle, double share) {
       const double away = (place.origin + middle.x() * e1 + middle.y() * e2).norm() - share * (e1.norm() + e2.norm());
       if (away > radius + reach_) return;
-      Index& head = place_heads_[static_cast<std::size_t>(bucket) * rings_ + ring_of(away - radius)];
-      add_place(place, are_touched ? ~copy : copy, head);
+      found.push_back({static_cast<std::size_t>(bucket) * rings_ + ring_of(away - radius), &place});
     });
   }
+  Index number = make_room(static_cast<Index>(found.size()));
+  for (const auto& [list, place] : found) {
+    Place& added = places_[static_cast<std::size_t>(number / k_block)][number % k_block];
+    added = {place->turn.cast<float>(), place->origin.cast<float>(), are_touched ? ~copy : copy, k_none};
+    added.next = std::atomic_ref(place_heads_[list]).exchange(number++, std::memory_order_relaxed);
+  }
+}
+
+/// Returns the number of the first of so many new places.
+Index PlacedShapes::make_room(Index count) {
+  const std::lock_guard lock(places_mutex_);
+  const Index first = place_count_;
+  place_count_ += count;
+  while (static_cast<Index>(places_.size()) * k_block < place_count_)
+    places_.push_back(std::make_unique_for_overwrite<Place[]>(k_block));
+  return first;
 }
 
 }  // namespace saddleback::distribution

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -34,19 +35,20 @@ class PlacedShapes {
   std::span<const Copy> copies() const { return copies_; }
 
   /// Tells exactly whether the outline has no common point with those that lie there and neither lies within the other.
-  /// `mapper` has just mapped it.
-  bool is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
+  /// `faces`: those that it touches.
+  bool is_free(const Copy& copy, const SurfaceOutline& outline, std::span<const FacePlace> faces) const;
 
   /// Puts a copy there.
   void add(const Copy& copy, const SurfaceOutline& outline);
 
   /// Returns how far from its center a copy can be met.
   double reach(const Copy& copy) const { return copy.radius() + reach_; }
-  /// Makes known for the copy of this number where faces lie about it, or those that it touches.
+  /// Makes known for the copy of this number where faces lie about it, or those that it touches. May be called from
+  /// several threads while none looks.
   void add_places(Index copy, const std::vector<FacePlace>& places, bool are_touched);
 
   /// Calls visit(copy number, FacePlace's origin and turn) for copies that something of the circumradius `reach` about
-  /// the point may meet, until it gives true; then returns true.
+  /// the point may meet, in no order, until it gives true; then returns true.
   template <class Visit>
   bool visit(Index face, const Vec2& weights, double reach, Visit&& visit) const {
     const Index* const heads = place_heads_.data() + static_cast<std::size_t>(buckets_.at(face, weights)) * rings_;
@@ -109,10 +111,10 @@ class PlacedShapes {
     return ring;
   }
   const Place& place(Index i) const { return places_[static_cast<std::size_t>(i / k_block)][i % k_block]; }
-  void add_place(const FacePlace& place, Index number, Index& head);
+  Index make_room(Index count);
   bool meets(const OutlinePiece& piece) const;
   bool is_within_another(const OutlinePiece& piece) const;
-  bool holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
+  bool holds_another(const Copy& copy, std::span<const FacePlace> faces) const;
 
   const Mesh* mesh_;
   const FlatFaces* flat_;
@@ -126,6 +128,7 @@ class PlacedShapes {
   std::vector<Piece> pieces_;
   std::vector<std::unique_ptr<Place[]>> places_;  ///< in blocks, which never move
   Index place_count_ = 0;
+  std::mutex places_mutex_;  ///< held while the two grow
 };
 
 }  // namespace saddleback::distribution
