@@ -55,6 +55,10 @@ def test_random_input_meets_the_truths():
         ("relaxation.least_sums_of_squares", 91001186),  # at a vertex where the border is more than half a turn
         ("outlines.safe_distances", 20301927),  # needles side by side, told apart by the tables' angles
         ("outlines.safe_distances", 892871),  # a strip before the other's first
+        ("ways.maps_do_not_fold", 20284100),  # parts of a face that have no area but for rounding, refused
+        ("ways.maps_do_not_fold", 20284209),  # far from the origin a step of a line across is rounding, refused
+        ("ways.maps_do_not_fold", 20284539),  # a closed curve that ends along its beginning: flow below doubles between
+        ("ways.maps_do_not_fold", 30520017),  # a fan of slivers laid on each other
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them
         ("baked.texels_of_cells", 30508662),  # rays went round a spike of 6e-9 radians without end, never at its tip

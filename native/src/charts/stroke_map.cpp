@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "saddleback/error.h"
@@ -29,6 +30,8 @@ using charts::SweptSide;
 constexpr double k_size = 1.0 / 3;
 // As harmonic_map has it.
 constexpr double k_least_weight = 1e-3;
+// Of corners without a width but for rounding.
+constexpr double k_most_cotangent = 1e9, k_least_edge = std::numeric_limits<double>::min();
 // What a vertex on the free border gives beyond what it gets, at least, as a share of that.
 constexpr double k_least_surplus = 1e-3;
 // As a share of the length: nearest points this near to an end of the curve are that end.
@@ -55,7 +58,8 @@ class Weights {
         const auto at = [&](Index i) -> const Vec3& { return sheet.positions[parted.nodes[vertices_[i]]]; };
         const Vec3& apex = at(halfedge_apex(triangles, h));
         const Vec3 a = at(halfedge_from(triangles, h)) - apex, b = at(halfedge_to(triangles, h)) - apex;
-        weight += a.dot(b) / a.cross(b).norm();
+        const double along = a.dot(b);
+        weight += along / std::max({a.cross(b).norm(), std::abs(along) / k_most_cotangent, k_least_edge});
       }
       weight = std::max(weight, k_least_weight);
       const Index h = edges.edge(e).front(), a = halfedge_from(triangles, h), b = halfedge_to(triangles, h);
@@ -91,7 +95,9 @@ class Weights {
       double own = 0;
       for (const Neighbor& n : rows_[i]) own += n.weight * height(i, n);
       const Index v = vertices_[i];
-      const bool is_free = swept_.is_last[v] || swept_.held[v] != Held::nothing;
+      // Along a ridge of very many vertices the flow may become less than doubles hold.
+      const bool is_free =
+          swept_.is_last[v] || swept_.held[v] != Held::nothing || flow[i] < std::numeric_limits<double>::min();
       factor[i] = (is_free ? std::max(own, flow[i] * (1 + k_least_surplus)) : flow[i]) / own;
       for (const Neighbor& n : rows_[i]) flow[n.number] += factor[i] * n.weight * height(i, n);
     }

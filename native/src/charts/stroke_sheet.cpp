@@ -12,6 +12,7 @@
 #include "geodesics/wavefront/directions_at_point.h"
 #include "mesh/cutting/barrier_cuts.h"
 #include "mesh/tables/edge_key.h"
+#include "mesh/tables/face_shape.h"
 #include "support/disjoint_sets.h"
 
 namespace saddleback::charts {
@@ -27,7 +28,8 @@ constexpr double k_increase = 0.1;
 constexpr double k_apart = 4;
 // As a share of the radius: nodes this near to it lie on it.
 constexpr double k_at_radius = 1e-6;
-constexpr int k_most_divisions = 100;
+// As a share of the longest edge: what makes any triangle higher than a mesh demands.
+constexpr double k_mollified = 4 * k_degenerate_height;
 
 constexpr double k_nowhere = std::numeric_limits<double>::quiet_NaN();
 
@@ -48,15 +50,21 @@ class Beads {
 
   bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c) const {
     const Vec3 center = (a + b + c) / 3;
-    const double reach =
-        reach_ +
-        std::sqrt(std::max({(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
+    return may_reach(
+        center,
+        std::sqrt(std::max({(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()})));
+  }
+  /// Tells so of the ball about an edge. Every point of a triangle is in that of one of its edges.
+  bool may_reach(const Vec3& a, const Vec3& b) const { return may_reach((a + b) / 2, (a - b).norm() / 2); }
+
+ private:
+  static constexpr double k_spacing = 0.125;  ///< half of it, as a share of the radius
+  bool may_reach(const Vec3& center, double size) const {
+    const double reach = reach_ + size;
     return std::ranges::any_of(beads_,
                                [&](const Vec3& bead) { return (bead - center).squaredNorm() <= reach * reach; });
   }
 
- private:
-  static constexpr double k_spacing = 0.125;  ///< half of it, as a share of the radius
   double reach_;
   std::vector<Vec3> beads_;
 };
@@ -185,6 +193,39 @@ class Divider {
   std::unordered_map<std::uint64_t, Index> nodes_;
 };
 
+/// The sheet's triangles as a mesh, on which every one has an area. Where one has none in space but for rounding all
+/// edges are taken for longer by next to nothing (mollification [sharpcrane2020]).
+Mesh mesh_with_areas(const std::vector<double>& xyz, const std::vector<Index>& triangles, const JobStage& stage) {
+  const auto at = [&](std::size_t corner) {
+    return Vec3(xyz.data() + 3 * static_cast<std::size_t>(triangles[corner]));
+  };
+  bool has_areas = true;
+  std::vector<double> lengths;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const Vec3 a = at(t), b = at(t + 1), c = at(t + 2);
+    has_areas &= !is_degenerate_face(a, b, c);
+    lengths.insert(lengths.end(), {(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  }
+  if (has_areas) return {xyz, triangles, stage};
+  const double more = k_mollified * std::ranges::max(lengths);
+  for (double& length : lengths) length += more;
+  return {xyz, triangles, {.lengths = lengths}};
+}
+
+/// Tells whether two points of a line are farther apart than by rounding: of coordinates in their face, since places
+/// far from the origin are rounded by more.
+bool is_step(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double least) {
+  constexpr double k_rounding = 1e-13;
+  const Index face = shared_face(mesh, a, b, k_barycentric_tolerance);
+  if (face == k_none) return false;
+  const FaceChart chart(mesh, face);
+  const double longest = std::ranges::max(mesh.lengths().subspan(3 * static_cast<std::size_t>(face), 3));
+  const auto place = [&](const SurfacePoint& point) {
+    return chart.to_plane(*barycentric_in(mesh, point, face, k_barycentric_tolerance));
+  };
+  return (place(b) - place(a)).norm() > std::max(least, k_rounding * longest);
+}
+
 /// Ends a line where it comes back to a face: no shortest one does.
 void drop_returns(const Mesh& mesh, SurfacePoints& line) {
   std::unordered_set<Index> passed;
@@ -227,6 +268,26 @@ std::array<SurfacePoints, 2> lines_across(const Unfolding& unfolding, const Surf
     drop_returns(mesh, lines[i]);
   }
   return lines;
+}
+
+/// Halves edges between two points of the curve, which would have no width in the map; where the curve comes near to
+/// itself or turns back the cut locus is between.
+void divide_between_curve(Sheet& sheet, const Mesh& near, bool closed, const JobStage& stage) {
+  std::vector<double> along(sheet.points.size(), k_nowhere);
+  double length = 0;
+  for (std::size_t i = 0; i < sheet.curve.size(); ++i) {
+    if (i > 0) length += (sheet.positions[sheet.curve[i]] - sheet.positions[sheet.curve[i - 1]]).norm();
+    if (i == 0 || sheet.curve[i] != sheet.curve[0]) along[sheet.curve[i]] = length;
+  }
+  for (const bool with_walls : {true, false}) {
+    const auto known = static_cast<Index>(along.size());
+    Divider(sheet, near, with_walls).divide(stage, [&](Index a, Index b) -> double {
+      if (b >= known || std::isnan(along[a]) || std::isnan(along[b]) || sheet.walls.contains(edge_key(a, b))) return 0;
+      double apart = std::abs(along[a] - along[b]);
+      if (closed) apart = std::min(apart, length - apart);
+      return with_walls && apart <= k_apart * (sheet.positions[a] - sheet.positions[b]).norm() ? 0 : 0.5;
+    });
+  }
 }
 
 }  // namespace
@@ -290,15 +351,19 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   for (std::size_t i = 0; i < 4; ++i) {
     begins[i] = pieces.size();
     for (std::size_t k = 1; k < lines[i].size(); ++k)
-      if ((position(near, lines[i][k]) - position(near, lines[i][k - 1])).norm() > k_at_radius * k_at_radius * radius)
+      if (is_step(near, lines[i][k - 1], lines[i][k], k_at_radius * k_at_radius * radius))
         pieces.emplace_back(near, SurfacePoints{lines[i][k - 1], lines[i][k]});
   }
   begins[4] = pieces.size();
   std::vector<const SurfaceCurve*> all{&curve};
   for (const SurfaceCurve& piece : pieces) all.push_back(&piece);
-  BarrierCuts cuts(near, {}, all, "curve: it");
+  // Beyond the radius as well, that a triangle with a part within it has no vertex that is farther beyond than `size`.
+  const Beads beads(curve, radius + size);
+  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }};
+  BarrierCuts cuts(near, {}, all, "curve: it", &fineness);
   Sheet sheet;
   for (Index f = 0; f < near.face_count(); ++f) {
+    stage.check();
     if (cuts.is_cut(f))
       cuts.cut(f, sheet.triangles);
     else
@@ -315,33 +380,7 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
       for (const Index node : cuts.line(k + 1))
         if (sheet.across[i].empty() || sheet.across[i].back() != node) sheet.across[i].push_back(node);
   for (std::size_t i = 1; i < sheet.curve.size(); ++i) sheet.walls.insert(edge_key(sheet.curve[i - 1], sheet.curve[i]));
-  // An edge between two points of the curve would have no width in the map.
-  std::vector<std::uint8_t> on_curve(sheet.points.size(), 0);
-  for (const Index node : sheet.curve) on_curve[node] = 1;
-  Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
-    return on_curve[a] && on_curve[b] && !sheet.walls.contains(edge_key(a, b)) ? 0.5 : 0;
-  });
-  const Beads beads(curve, radius);
-  const std::vector<Vec3>& at = sheet.positions;
-  for (int round = 0; round < k_most_divisions; ++round) {
-    stage.check();
-    // Only the longest edge of each triangle, that needles become shorter and not thinner [rivara1984].
-    std::unordered_set<std::uint64_t> too_long;
-    for (const Triangle& t : sheet.triangles) {
-      int longest = 0;
-      std::array<double, 3> length;
-      for (int i = 0; i < 3; ++i) {
-        length[i] = (at[t[i]] - at[t[(i + 1) % 3]]).norm();
-        if (length[i] > length[longest]) longest = i;
-      }
-      if (length[longest] > size && beads.may_reach(at[t[0]], at[t[1]], at[t[2]]))
-        too_long.insert(edge_key(t[longest], t[(longest + 1) % 3]));
-    }
-    if (too_long.empty()) break;
-    Divider(sheet, near, false).divide(stage, [&](Index a, Index b) {
-      return too_long.contains(edge_key(a, b)) ? 0.5 : 0;
-    });
-  }
+  divide_between_curve(sheet, near, curve.closed(), stage);
   return sheet;
 }
 
@@ -359,7 +398,7 @@ void measure(Sheet& sheet, bool closed, double length, double reach, const JobSt
       triangles.push_back(vertex[corner]);
     }
   }
-  const Mesh fine(xyz, triangles, stage);
+  const Mesh fine = mesh_with_areas(xyz, triangles, stage);
   SurfacePoints line;
   for (const Index c : sheet.curve) line.push_back(at_vertex(fine, vertex[c]));
   if (closed) line.pop_back();

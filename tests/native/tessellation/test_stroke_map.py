@@ -67,6 +67,31 @@ def test_a_stroke_that_bends_on_a_solid():
         np.testing.assert_allclose(found.points.positions(mesh), found.vertices, atol=1e-9)
 
 
+def test_needles_side_by_side_become_ladders():
+    mesh = sb.Mesh(*meshes.cylinder(120, 2, height=50.0))
+    way = sb.ExactField(mesh, 3).path(120 + 70).surface
+    radius = 1.5
+    found = sb.stroke_map(mesh, sb.SurfaceCurve(mesh, way), radius)
+    assert flipped(found) == overlapping(found) == 0
+    assert found.coverage > 0.99
+    # Rungs at either end of the parts of each edge, which are at least half as long as wanted.
+    least = mesh.edge_count * 50 / (radius / 3)
+    assert len(found.triangles) < 2.5 * least
+
+
+def test_no_map_between_parts_of_the_curve_that_come_near_to_each_other():
+    """A stroke that turns back beside itself: each part has its half of the wedge between, no triangle has both."""
+    corners = np.array([[0.1, 0.5, 0], [0.9, 0.503, 0], [0.15, 0.52, 0]])
+    points = sb.project(GRID, corners)
+    ways = [sb.ExactField(GRID, points[i]).path(points[i + 1]).surface for i in range(2)]
+    faces, weights = (np.concatenate([getattr(way, name) for way in ways]) for name in ("faces", "barycentric"))
+    found = sb.stroke_map(GRID, sb.SurfaceCurve(GRID, sb.SurfacePoints(faces, weights)), 0.1)
+    assert flipped(found) == overlapping(found) == 0
+    assert np.isfinite(found.uv).all()
+    assert np.ptp(found.uv[found.triangles, 0], axis=1).max() < 0.2 * found.length
+    assert found.coverage > 0.95
+
+
 @pytest.mark.parametrize("radius", [0.0, -1.0, np.inf, np.nan])
 def test_a_radius_that_is_none(radius: float):
     with pytest.raises(sb.InputError, match="radius: wanted a finite distance above 0"):

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "saddleback/error.h"
@@ -15,21 +16,33 @@ namespace {
 // In barycentric coordinates: what is nearer meets. Far above the rounding of points where two curves cross, so that no
 // slit is left where one ends on another, and far below what anybody draws.
 constexpr double k_meets = 1e-9;
+// Edges and pieces that are too long become parts that are shorter than asked for by this factor, so that those between
+// the parts of two edges side by side, as needles have them, are short enough at once.
+constexpr double k_shorter = 1 / std::numbers::sqrt2;
+constexpr int k_most_rounds = 100;
 
 double area_between(const Vec2& u, const Vec2& v) { return u.x() * v.y() - u.y() * v.x(); }
 Vec3 from_weights(const Vec2& w) { return {1 - w.x() - w.y(), w.x(), w.y()}; }
+/// Equal parts of a way for which edges of that length are wanted.
+int parts_of(double way, double length) {
+  return way <= length ? 1 : static_cast<int>(std::ceil(way / (k_shorter * length)));
+}
 
 }  // namespace
 
 BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-                         std::span<const SurfaceCurve* const> curves, const char* only)
-    : mesh_(mesh), only_(only), lines_(curves.size()) {
+                         std::span<const SurfaceCurve* const> curves, const char* only, const Fineness* fineness)
+    : mesh_(mesh), only_(only), fineness_(fineness), lines_(curves.size()) {
   points_.reserve(static_cast<std::size_t>(mesh.vertex_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) points_.push_back(at_vertex(mesh, v));
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(static_cast<Index>(i), *curves[i]);
   std::map<Index, std::vector<Index>> by_face;
   for (std::size_t i = 0; i < pieces_.size(); ++i) by_face[pieces_[i].face].push_back(static_cast<Index>(i));
   for (const auto& [face, pieces] : by_face) cross(pieces);
+  if (fineness_) {
+    divide_pieces();
+    divide_edges();
+  }
   // Only now are all nodes known that a barrier may pass.
   follow_curves(curves);
   for (std::size_t i = 0; i < edges.size(); ++i) add_given_edge(given_edge(mesh, edges[i], i));
@@ -202,6 +215,71 @@ void BarrierCuts::cross(std::span<const Index> pieces) {
   }
 }
 
+/// Makes nodes in pieces of curves that are too long.
+void BarrierCuts::divide_pieces() {
+  for (const auto& [face, curve, from, to] : pieces_) {
+    const Vec3 a = *barycentric_in(mesh_, points_[from], face), b = *barycentric_in(mesh_, points_[to], face);
+    const int parts = parts_of((position(mesh_, {face, b}) - position(mesh_, {face, a})).norm(), fineness_->length);
+    for (int i = 1; i < parts; ++i) node_at(face, a + i / static_cast<double>(parts) * (b - a));
+  }
+}
+
+/// Makes nodes in edges that are too long, between those that are there: equal parts, as far as they are near.
+void BarrierCuts::divide_edges() {
+  std::vector<double> shares;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+    if (speaker(h) != h || mesh_.length(h) <= fineness_->length) continue;
+    const Vec3 &start = mesh_.position(mesh_.from(h)), way = mesh_.position(mesh_.to(h)) - start;
+    std::vector<double> ends{0};
+    if (const auto found = on_edge_.find(h); found != on_edge_.end())
+      for (const OnEdge& on : found->second) ends.push_back(on.along);
+    ends.push_back(1);
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+      const double first = ends[i - 1], step = ends[i] - first;
+      const int parts = parts_of(step * mesh_.length(h), fineness_->length);
+      const auto divide = [&](auto&& self, int low, int high) -> void {
+        const double a = first + step * low / parts, b = first + step * high / parts;
+        if (high - low < 2 || !fineness_->is_near(start + a * way, start + b * way)) return;
+        const int middle = (low + high) / 2;
+        self(self, low, middle);
+        node_on(h, first + step * middle / parts);
+        self(self, middle, high);
+      };
+      divide(divide, 0, parts);
+    }
+  }
+}
+
+/// Makes nodes in the middle of edges within the face that are too long, the longest first, and keeps the triangles
+/// Delaunay's [rivara1984].
+void BarrierCuts::divide_inside(Index face, std::vector<Index>& nodes) {
+  std::vector<Vec2> at;
+  for (const Index node : nodes) at.push_back(weights(face, node));
+  const auto place = [&](Index i) { return position(mesh_, {face, from_weights(at[i])}); };
+  std::vector<std::array<Index, 2>> too_long;
+  double limit = mesh_.length(3 * face) + mesh_.length(3 * face + 1);
+  for (int round = 0; round < k_most_rounds; ++round) {
+    limit = std::max(limit * k_shorter, fineness_->length);
+    too_long.clear();
+    for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
+      const Triangle flat = flat_.triangle(t);
+      for (int k = 0; k < 3; ++k) {
+        const Index from = flat[k], to = flat[(k + 1) % 3];
+        if (from > to || flat_.neighbor(t, k) == k_none) continue;
+        const Vec3 a = place(from), b = place(to);
+        if ((b - a).squaredNorm() > limit * limit && fineness_->is_near(a, b)) too_long.push_back({from, to});
+      }
+    }
+    if (too_long.empty() && limit == fineness_->length) return;
+    for (const auto& [from, to] : too_long) {
+      const Vec2 middle = (at[from] + at[to]) / 2;
+      if (flat_.add(middle) < static_cast<Index>(at.size())) continue;
+      at.push_back(middle);
+      nodes.push_back(new_node(face, from_weights(middle)));
+    }
+  }
+}
+
 /// The nodes that a piece passes, with its ends.
 void BarrierCuts::follow(const Piece& piece, std::vector<Index>& chain) const {
   const Vec2 a = weights(piece.face, piece.from), along = weights(piece.face, piece.to) - a;
@@ -232,7 +310,7 @@ void BarrierCuts::refuse(Index curve, Index node) const {
 void BarrierCuts::cut(Index face, std::vector<Triangle>& triangles) {
   const FaceChart chart(mesh_, face);
   flat_.begin({chart.corner[0], chart.corner[1], chart.corner[2]});
-  const std::vector<Index> nodes = nodes_of(face);
+  std::vector<Index> nodes = nodes_of(face);
   std::unordered_map<Index, Index> number;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     number[nodes[i]] = i < 3 ? static_cast<Index>(i) : flat_.add(weights(face, nodes[i]));
@@ -242,6 +320,7 @@ void BarrierCuts::cut(Index face, std::vector<Triangle>& triangles) {
         throw InputError(message("curves: they cross at too small an angle in face ", face, "; move one of them"));
   }
   flat_.improve();
+  if (fineness_) divide_inside(face, nodes);
   for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
     const Triangle flat = flat_.triangle(t);
     triangles.push_back({nodes[flat[0]], nodes[flat[1]], nodes[flat[2]]});

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
@@ -15,6 +16,12 @@
 
 namespace saddleback {
 
+/// Asks for small triangles: edges longer than `length` are divided where `is_near` says so of their ends.
+struct Fineness {
+  double length;
+  std::function<bool(const Vec3& a, const Vec3& b)> is_near;
+};
+
 /// Nodes are the vertices of the mesh and, numbered after them, the points at which curves bend, meet or cross edges.
 /// Two faces that are parted along an edge must differ in one of its ends: an edge that is a barrier for itself has a
 /// node in its middle.
@@ -23,9 +30,10 @@ class BarrierCuts {
   /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where and,
   /// unless `only` names the only one that can, which.
   BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-              std::span<const SurfaceCurve* const> curves, const char* only = nullptr);
+              std::span<const SurfaceCurve* const> curves, const char* only = nullptr,
+              const Fineness* fineness = nullptr);
 
-  /// All nodes on the mesh.
+  /// All nodes on the mesh: those within faces that are divided for fineness once these are cut.
   const SurfacePoints& points() const { return points_; }
   /// Tells whether the edge between two nodes is a barrier.
   bool is_barrier(Index a, Index b) const { return barriers_.contains(edge_key(a, b)); }
@@ -61,6 +69,9 @@ class BarrierCuts {
   Vec2 weights(Index face, Index node) const;
   std::vector<Index> nodes_of(Index face) const;
   void cross(std::span<const Index> pieces);
+  void divide_pieces();
+  void divide_edges();
+  void divide_inside(Index face, std::vector<Index>& nodes);
   void follow_curves(std::span<const SurfaceCurve* const> curves);
   void follow(const Piece& piece, std::vector<Index>& chain) const;
   void halve_lonely_edges();
@@ -68,6 +79,7 @@ class BarrierCuts {
 
   const Mesh& mesh_;
   const char* only_;
+  const Fineness* fineness_;
   SurfacePoints points_;
   std::vector<Piece> pieces_;                               ///< in the order along the curves
   std::unordered_map<Index, std::vector<Index>> inside_;    ///< nodes within a face
