@@ -324,11 +324,14 @@ GeodesicVoronoi subdivision(const FaceCandidates& candidates, const SurfacePoint
                             const JobStage& stage) {
   GeodesicVoronoi result = divide_faces(candidates, threads, stage.part(0, 0.7));
   result.sites = sites;
-  result.areas = cell_areas(candidates.table(), result, threads);
-  stage.check();
   const std::vector<Segment> segments = find_segments(result, candidates.table().vertex_count, threads);
   stage.check();
-  const Chains chains(segments, result.points.size(), result);
+  parallel_for(2, threads, 1, [&](Index task, int) {
+    if (task == 0)  // by one thread, and takes as long as the areas by many
+      Chains(segments, result.points.size(), result);
+    else
+      result.areas = cell_areas(candidates.table(), result, threads);
+  });
   stage.update(1);
   return result;
 }

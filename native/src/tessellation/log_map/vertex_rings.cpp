@@ -24,11 +24,13 @@ bool VertexRings::bends_much(const Mesh& mesh, Index vertex) {
 
 VertexRings::VertexRings(const SaddleVertexGraph& graph, int threads) : first_(graph.mesh().vertex_count() + 1, 0) {
   const Mesh& mesh = graph.mesh();
-  order_faces(graph, threads);
-  for (const Triangle& t : mesh.triangles()) {
-    for (const Index v : t) ++first_[graph.node_of(v) + 1];
-  }
-  for (Index node = 0; node < mesh.vertex_count(); ++node) first_[node + 1] += first_[node];
+  const auto count_wedges = [&] {
+    for (const Triangle& t : mesh.triangles()) {
+      for (const Index v : t) ++first_[graph.node_of(v) + 1];
+    }
+    for (Index node = 0; node < mesh.vertex_count(); ++node) first_[node + 1] += first_[node];
+  };
+  parallel_for(2, threads, 1, [&](Index task, int) { task == 0 ? order_faces(graph, threads) : count_wedges(); });
   wedges_.resize(first_.back());
   parallel_for(mesh.vertex_count(), threads, 1024, [&](Index node, int) {
     Wedge* wedge = &wedges_[first_[node]];
