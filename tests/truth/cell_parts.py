@@ -322,13 +322,20 @@ def check_whole(mesh: sb.Mesh, split: sb.SplitMesh) -> None:
 
 
 def check_covered(mesh: sb.Mesh, polygons: sb.CellPolygons, edges: np.ndarray, sides: list[tuple[int, int]]) -> None:
-    """Every point tried of a barrier lies on a side, of one polygon on the border, of two elsewhere."""
+    """Between any two corners next to each other on a barrier it lies on a side, of one polygon on the border, of two
+    elsewhere.
+    """
     ends = polygons.vertices[np.array(sides, dtype=int).reshape(-1, 2)]
     begin, way = ends[:, 0], ends[:, 1] - ends[:, 0]
     of_mesh, within = mesh.vertices[mesh.edges], 1e-5 * longest_edge(mesh)
     for a, b in edges.tolist():
-        for share in (0.137, 0.519, 0.881):
-            point = (1 - share) * mesh.vertices[a] + share * mesh.vertices[b]
+        start, along = mesh.vertices[a], mesh.vertices[b] - mesh.vertices[a]
+        shares = np.clip((begin - start) @ along / (along @ along), 0, 1)
+        on_it = np.linalg.norm(start + shares[:, None] * along - begin, axis=1) < within
+        corners = np.unique([0.0, *shares[on_it], 1.0])
+        # In a middle no side ends: of two that meet at a corner, both would be near it.
+        for share in ((corners[1:] + corners[:-1]) / 2)[np.diff(corners) * np.linalg.norm(along) > 2 * within]:
+            point = start + share * along
             found, wanted = count_near(point, begin, way, within), 1 if is_border(mesh, a, b) else 2
             # Where the surface lies on itself, sides along other edges are there, too.
             is_alone = count_near(point, of_mesh[:, 0], of_mesh[:, 1] - of_mesh[:, 0], within) == 1

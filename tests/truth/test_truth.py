@@ -43,6 +43,7 @@ def test_random_input_meets_the_truths():
         ("cells.places_in_cells", 66001587),  # a site seen straight that claims nothing of the face
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
+        ("cell_parts.polygons_beside_barriers", 20406904),  # a corner on the point of a barrier that was tried
         ("relaxation.least_sums_of_squares", 72000214),  # to and fro across a valley, between ways that bend
         ("relaxation.least_sums_of_squares", 72000855),  # held by the border, a hundred times
         ("relaxation.least_sums_of_squares", 74000016),  # the least is at a saddle that ways bend at
