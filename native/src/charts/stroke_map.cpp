@@ -282,7 +282,7 @@ StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius,
   const double length = curve.length();
   measure(sheet, curve.closed(), length, reach, stage.part(0.3, 0.7));
   cut_at_cut_locus(sheet, near.mesh, curve.closed(), length, stage);
-  cut_at_radius(sheet, near.mesh, radius, stage);
+  cut_at_radius(sheet, near.mesh, curve.closed(), length, radius, stage);
   stage.update(0.75);
   double farthest = 0;
   for (const Triangle& t : sheet.triangles)

@@ -237,7 +237,7 @@ void drop_returns(const Mesh& mesh, SurfacePoints& line) {
 
 /// Straightest lines from an end of the curve, or from where a closed one starts: to the left and to the right.
 std::array<SurfacePoints, 2> lines_across(const Unfolding& unfolding, const SurfaceCurve& curve, bool at_start,
-                                          double radius) {
+                                          double reach) {
   const Mesh& mesh = unfolding.mesh();
   const CurveSegment &first = curve.segments().front(), &last = curve.segments().back();
   const SurfacePoint point = end_point(at_start ? first : last, at_start);
@@ -264,7 +264,7 @@ std::array<SurfacePoints, 2> lines_across(const Unfolding& unfolding, const Surf
       angle = begin + std::fmod(std::fmod(angle - begin, end - begin) + (end - begin), end - begin);
     else if (angle < begin || angle > end)
       continue;
-    lines[i] = trace(mesh, point, angle, std::min(radius, most)).path.surface;
+    lines[i] = trace(mesh, point, angle, std::min(reach, most)).path.surface;
     drop_returns(mesh, lines[i]);
   }
   return lines;
@@ -288,6 +288,21 @@ void divide_between_curve(Sheet& sheet, const Mesh& near, bool closed, const Job
       return with_walls && apart <= k_apart * (sheet.positions[a] - sheet.positions[b]).norm() ? 0 : 0.5;
     });
   }
+}
+
+/// Returns where an edge of this size has the distance, as a share of it: its ends are at these distances, their
+/// nearest points so far apart. Squares of distances from a point are quadratic along it; from a line, where those
+/// points are as far apart as the edge is long beside it, the distances are linear; about a round bend the truth lies
+/// between.
+double share_at(double distance, double from, double to, double size, double apart) {
+  const double climb = to - from, beside = std::sqrt(std::max(size * size - climb * climb, 0.0));
+  // from^2 + linear t + square t^2 = distance^2
+  const double square = climb * climb + (std::isfinite(apart) ? beside * (beside - apart) : 0);
+  const double linear = to * to - from * from - square, rest = from * from - distance * distance;
+  const double root = std::sqrt(std::max(linear * linear - 4 * square * rest, 0.0));
+  // Of the roots the one between the ends, at which the distance rises from the first to the second as they say.
+  const double share = climb > 0 ? -2 * rest / (linear + root) : -2 * rest / (linear - root);
+  return share > 0 && share < 1 ? share : (distance - from) / climb;
 }
 
 }  // namespace
@@ -345,7 +360,8 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   std::array<SurfacePoints, 4> lines;
   for (const bool at_start : {true, false}) {
     if (!at_start && curve.closed()) break;
-    auto both = lines_across(unfolding, curve, at_start, radius);
+    // As far as edges that are cut at the radius: past an end of the curve distances are no longer linear.
+    auto both = lines_across(unfolding, curve, at_start, radius + size);
     for (int i = 0; i < 2; ++i) lines[(at_start ? 0 : 2) + i] = std::move(both[i]);
   }
   for (std::size_t i = 0; i < 4; ++i) {
@@ -445,16 +461,18 @@ void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length
   });
 }
 
-void cut_at_radius(Sheet& sheet, const Mesh& near, double radius, const JobStage& stage) {
+void cut_at_radius(Sheet& sheet, const Mesh& near, bool closed, double length, double radius, const JobStage& stage) {
   for (double& distance : sheet.distance)
     if (std::abs(distance - radius) <= k_at_radius * radius) distance = radius;
+  const std::size_t count = sheet.points.size();
   Divider(sheet, near, false).divide(stage, [&](Index a, Index b) -> double {
     const double from = sheet.distance[a], to = sheet.distance[b];
     if (!std::isfinite(from + to) || (from - radius) * (to - radius) >= 0) return 0;
-    return (radius - from) / (to - from);
+    double apart = std::abs(sheet.along[a] - sheet.along[b]);
+    if (closed) apart = std::min(apart, length - apart);
+    return share_at(radius, from, to, (sheet.positions[a] - sheet.positions[b]).norm(), apart);
   });
-  for (double& distance : sheet.distance)
-    if (std::abs(distance - radius) <= k_at_radius * radius) distance = radius;
+  std::fill(sheet.distance.begin() + static_cast<std::ptrdiff_t>(count), sheet.distance.end(), radius);
   std::size_t kept = 0;
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
     const Triangle& of = sheet.triangles[t];

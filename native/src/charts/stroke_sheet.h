@@ -45,6 +45,6 @@ void measure(Sheet& sheet, bool closed, double length, double reach, const JobSt
 void cut_at_cut_locus(Sheet& sheet, const Mesh& near, bool closed, double length, const JobStage& stage);
 
 /// Cuts at the radius and drops what is beyond.
-void cut_at_radius(Sheet& sheet, const Mesh& near, double radius, const JobStage& stage);
+void cut_at_radius(Sheet& sheet, const Mesh& near, bool closed, double length, double radius, const JobStage& stage);
 
 }  // namespace saddleback::charts

@@ -35,6 +35,25 @@ def test_a_straight_strip_is_nearly_the_plane_itself():
     assert flipped(found) == overlapping(found) == 0
 
 
+def test_distances_at_the_radius_are_those_beside_ends_and_about_bends():
+    """Where edges are cut at the radius, whose ends see past an end of the curve or round a bend."""
+    points = sb.project(GRID, np.array([[0.31, 0.42, 0], [0.53, 0.44, 0], [0.5, 0.72, 0]]))
+    there, back = (sb.ExactField(GRID, points[i]).path(points[i + 1]).surface for i in range(2))
+    radius, places = 0.21, points.positions(GRID)[:, :2]
+    straight = sb.stroke_map(GRID, sb.SurfaceCurve(GRID, there), radius)
+    along, offset = places[1] - places[0], straight.vertices[:, :2] - places[0]
+    across = (along[0] * offset[:, 1] - along[1] * offset[:, 0]) / np.hypot(*along)
+    np.testing.assert_allclose(straight.uv[:, 1], across, atol=1e-12)
+    both = (np.concatenate([getattr(way, name) for way in (there, back)]) for name in ("faces", "barycentric"))
+    bent = sb.stroke_map(GRID, sb.SurfaceCurve(GRID, sb.SurfacePoints(*both)), radius)
+    offset = bent.vertices[:, :2] - places[1]
+    turn = np.arctan2(offset[:, 1], offset[:, 0])
+    # Edges are a third of the radius long at most: in these directions both of their ends see the bend.
+    about_it = (bent.uv[:, 1] == -radius) & (turn > -1.4 + 1 / 3) & (turn < 0.1 - 1 / 3)
+    assert about_it.sum() > 5
+    np.testing.assert_allclose(np.hypot(*offset[about_it].T), radius, rtol=1e-12)
+
+
 @pytest.mark.parametrize("radius", [0.05, 0.2])
 def test_a_circle_is_cut_open_and_its_left_is_within(radius: float):
     found = sb.stroke_map(GRID, circle(0.25), radius)

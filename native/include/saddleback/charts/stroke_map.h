@@ -20,12 +20,12 @@ struct StrokeMap {
 };
 
 /// Maps the surface within `radius` of a curve one to one to the plane. The second coordinate is the distance from the
-/// curve, exact at vertices (up to 1e-4 of the radius) and linear between them; the first is the arc length on the
-/// curve, and off it harmonic, so that it passes over bends, bumps and saddle vertices without jumps. Faces are cut
-/// along the curve, where it ends (at right angles), at the radius and at the cut locus, across which the patch does
-/// not hang together; they are divided where they are large beside the radius. Left out is what lies beyond the ends of
-/// the curve, and what no map of this kind can hold: about places where the distance has a maximum. Of a closed curve
-/// the map is cut open where it starts. \throw InputError for a radius that is not finite and above 0, a curve of
+/// curve, exact at the mesh's vertices (up to 1e-4 of the radius) and linear between them; the first is the arc length
+/// on the curve, and off it harmonic, so that it passes over bends, bumps and saddle vertices without jumps. Faces are
+/// cut along the curve, where it ends (at right angles), at the radius and at the cut locus, across which the patch
+/// does not hang together; they are divided where they are large beside the radius. Left out is what lies beyond the
+/// ends of the curve, and what no map of this kind can hold: about places where the distance has a maximum. Of a closed
+/// curve the map is cut open where it starts. \throw InputError for a radius that is not finite and above 0, a curve of
 /// another mesh, a curve that crosses or touches itself (telling where); Cancelled. O(n^1.5) for n vertices of the
 /// patch, and O(F).
 StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius, Job* job = nullptr);
