@@ -48,6 +48,12 @@ class CellClip {
   /// Returns what is left of the face; fewer than three corners where nothing is.
   std::vector<PieceCorner> clip() {
     for (Index k = 0; k < sides_.count() && !loop_.empty(); ++k) cut(k);
+    // A side nearly in line with one that came later may have seen nothing to cut off.
+    for (Index left = sides_.count(); left-- > 0;) {
+      const Index k = missing_side();
+      if (k == k_none) break;
+      cut(k);
+    }
     std::vector<PieceCorner> corners;
     for (const Corner& corner : loop_) {
       const bool is_side = corner.line < 0;
@@ -93,8 +99,27 @@ class CellClip {
     loop_ = std::move(kept);
   }
 
+  /// Tells whether a corner is where two sides meet of which one comes after the other, but with others between them:
+  /// outside of the cell, and of all of these.
+  bool is_outside(Index line_before, const Corner& corner) const {
+    return corner.key.kind == CornerKey::Kind::branch && corner.key.a == k_none && line_before < 0 && corner.line < 0 &&
+           sides_.after(~line_before) != ~corner.line;
+  }
+
+  /// Returns a side that cuts off a corner outside of the cell; k_none where there is none.
+  Index missing_side() const {
+    for (std::size_t i = 0; i < loop_.size(); ++i)
+      if (const Index before = loop_[i == 0 ? loop_.size() - 1 : i - 1].line; is_outside(before, loop_[i]))
+        return sides_.after(~before);
+    return k_none;
+  }
+
   double value(Index line_before, const Corner& corner, Index k, const Bisector& by) const {
     if (corner.key.kind == CornerKey::Kind::vertex) return by.value(corner.place);
+    if (is_outside(line_before, corner)) {
+      const Index count = sides_.count(), first = ~line_before;
+      if ((k - first + count) % count < (~corner.line - first + count) % count && k != first) return -1;
+    }
     int least = 1;
     if (corner.key.kind == CornerKey::Kind::crossing || corner.key.a == k_none)
       for (const Index line : {line_before, corner.line})
