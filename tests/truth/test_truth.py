@@ -61,6 +61,11 @@ def test_random_input_meets_the_truths():
         ("ways.maps_do_not_fold", 20284539),  # a closed curve that ends along its beginning: flow below doubles between
         ("ways.maps_do_not_fold", 30520017),  # a fan of slivers laid on each other
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
+        ("plane.lifted_cells", 12073),  # sides of twins in line to rounding, met as if none were between them
+        ("plane.lifted_cells", 28583),
+        ("relaxation.values_between_places", 5612356),  # two places 1e-5 apart pulled a third
+        ("ways.maps_hold_what_lies_beside", 20270245),  # an edge cut at the radius saw past an end of the curve
+        ("ways.maps_hold_what_lies_beside", 20275565),
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them
         ("baked.texels_of_cells", 30508662),  # rays went round a spike of 6e-9 radians without end, never at its tip
         ("sweeps.ties_of_a_circle", 31001546),  # six arcs vanish in the moment in which a site is touched

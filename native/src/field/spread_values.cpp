@@ -116,9 +116,18 @@ class Splines {
       right[i] = values[i];
     }
     // Places that say the same give way a little and meet at a mean: a share of what each bends, for components of
-    // other proportions bend by very different amounts.
-    constexpr double k_give = 1e-9;
-    for (Eigen::Index i = 0; i < count; ++i) system(i, i) *= 1 + k_give;
+    // other proportions bend by very different amounts. Others must not: beside places that say nearly the same, whose
+    // factors are as large as the share allows, theirs are large, too.
+    constexpr double k_give = 1e-9, k_same = 1e-5;
+    Eigen::VectorXd give = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j < count; ++j) {
+        if (i == j || system(i, column[component_of(mesh_, places_[j])]) == 0) continue;
+        const double both = system(i, i) + system(j, j), apart = both - system(i, j) - system(j, i);
+        give[i] = std::max(give[i], 1 - apart / (k_same * both));
+      }
+    }
+    for (Eigen::Index i = 0; i < count; ++i) system(i, i) *= 1 + k_give * give[i];
     const Eigen::VectorXd factors = system.fullPivLu().solve(right);
     std::vector<double> result(mesh_.vertex_count());
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
