@@ -91,6 +91,16 @@ def check_cells_without_places(mesh: sb.Mesh, rng: Random) -> None:
         np.testing.assert_allclose(there.areas, here.areas, rtol=0, atol=1e-5 * mesh.area)
 
 
+@guards("geodesic_voronoi", unsettled="parts run out where sites are as near over wide areas, or two ways to one are")
+def check_borders_are_nearest(mesh: sb.Mesh, rng: Random) -> None:
+    """To no point of a border is another site nearer by more than 1e-5 of the size of a cell, by exact distances."""
+    sites = random_sites(mesh, rng)
+    if not are_fat(mesh) or mesh.component_count > 1:
+        return
+    lag, size = lag_at_borders(mesh, exact_cells(mesh, sites)), np.sqrt(mesh.area / len(sites))
+    assert lag <= 1e-5 * size, f"another site is nearer by {lag}"
+
+
 def edges_of(triangles: NDArray[np.int32]) -> Counter[tuple[int, int]]:
     return Counter((min(e), max(e)) for t in triangles.tolist() for e in zip(t, t[1:] + t[:1], strict=True))
 

@@ -274,6 +274,13 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCa
                       const Ways* straight, double tolerance) const {
   std::vector<std::uint8_t> is_rival;
   for (const FaceCandidate& candidate : candidates) is_rival.push_back(!is_beaten(candidate, candidates));
+  // Corners are samples, too, where more is told of a site than its distance: what the others see lies between.
+  if (!straight)
+    for (const Distances* const corner : corners_of(part))
+      for (std::size_t i = 0; i < candidates.size(); ++i)
+        if (const Known* const known = find_source(*corner, candidates[i].site);
+            is_rival[i] && known && std::abs(known->excess) > tolerance)
+          return false;
   const std::array<Vec3, 4> samples = samples_of_part();
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Vec3& x = samples[s];
@@ -351,7 +358,7 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<
       if (known == told[i].end() || known->source != way.source)
         told[i].insert(known, {way.source, distance, true});
       else if (!known->is_straight)
-        *known = {way.source, distance, true};
+        *known = {way.source, distance, true, distance - known->distance};
     }
   }
   std::vector<FaceCandidate> straight;

@@ -37,6 +37,7 @@ class ExactParts {
     Index source;
     double distance;
     bool is_straight = false;  ///< told as if the surface went on
+    double excess = 0;         ///< what is told then, beyond the distance that is known
   };
   using Distances = std::vector<Known>;  ///< by site
   using Corners = std::array<const Distances*, 3>;
