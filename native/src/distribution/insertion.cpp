@@ -172,13 +172,11 @@ void Insertion::test(Attempt& attempt) const {
     attempt.outcome = Outcome::collision;
 }
 
-void Insertion::commit(Attempt& attempt) {
-  if (attempt.outcome == Outcome::laid && !attempt.is_lying && !is_wanted(attempt.copy.placement.shape))
-    attempt.outcome = Outcome::not_wanted;
-  if (attempt.outcome == Outcome::laid) {
-    const auto& faces = attempt.outline.faces;
-    if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) test(attempt);
-  }
+/// Lays a copy that had room before its batch, if it still has. Returns what became of it.
+Outcome Insertion::commit(Attempt& attempt) {
+  if (!attempt.is_lying && !is_wanted(attempt.copy.placement.shape)) return Outcome::not_wanted;
+  const auto& faces = attempt.outline.faces;
+  if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) test(attempt);
   if (attempt.outcome == Outcome::laid) {
     attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
     const auto number = static_cast<Index>(settled_.copies().size());
@@ -187,10 +185,9 @@ void Insertion::commit(Attempt& attempt) {
     pending_.push_back({number, std::move(attempt.plane), attempt.outline.faces});
     ++inserted_[attempt.copy.placement.shape];
     ++inserted_in_all_;
-    for (const Index face : attempt.outline.faces) touched_[face] = batch_;
-  } else if (attempt.outcome != Outcome::not_wanted) {
-    ++rejections_[static_cast<std::size_t>(attempt.outcome) - static_cast<std::size_t>(Outcome::collision)];
+    for (const Index face : faces) touched_[face] = batch_;
   }
+  return attempt.outcome;
 }
 
 void Insertion::keep(std::span<const Placement> lying, bool are_apart, const JobStage& stage) {
@@ -232,6 +229,8 @@ std::vector<Outcome> Insertion::insert(std::span<const Candidate> candidates, co
                [&](Index i, int) { keys[i] = std::bit_cast<std::uint64_t>(candidates[i].key + 0.0); });
   const std::vector<Index> order = order_of(keys, threads_, stage);
   std::vector<Index> turns;
+  // Side by side: most are turned away, and to fetch their attempts from other threads would take long.
+  std::array<Outcome, k_largest_batch> found;
   std::size_t size = k_first_batch;
   const auto goes_on = [&] { return candidates[0].lying || (is_any_wanted() && !is_hopeless()); };
   for (std::size_t begin = 0, end; begin < order.size() && goes_on(); begin = end) {
@@ -248,16 +247,18 @@ std::vector<Outcome> Insertion::insert(std::span<const Candidate> candidates, co
       stage.check();
       const Index turn = turns.empty() ? i : turns[i];
       attempt(candidates[order[begin + turn]], attempts_[turn], thread);
+      found[turn] = attempts_[turn].outcome;
     });
     std::size_t laid = 0, in_vain = 0;  // in vain: mapped, and turned away for another of the batch
     for (std::size_t i = begin; i < end; ++i) {
       stage.check();
-      const bool has_room = attempts_[i - begin].outcome == Outcome::laid;
-      commit(attempts_[i - begin]);
-      outcomes[order[i]] = attempts_[i - begin].outcome;
-      const bool is_laid = attempts_[i - begin].outcome == Outcome::laid;
-      laid += is_laid ? 1 : 0;
-      in_vain += has_room && !is_laid ? 1 : 0;
+      Outcome& outcome = outcomes[order[i]] = found[i - begin];
+      if (outcome == Outcome::laid) {
+        outcome = commit(attempts_[i - begin]);
+        ++(outcome == Outcome::laid ? laid : in_vain);
+      }
+      if (outcome > Outcome::not_wanted)
+        ++rejections_[static_cast<std::size_t>(outcome) - static_cast<std::size_t>(Outcome::collision)];
     }
     make_pending_known();
     if (2 * in_vain > laid) size = std::max(k_least_batch, size / 2);

@@ -83,7 +83,7 @@ class Insertion {
   void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
   void map(Attempt& attempt, OutlineMapper& mapper) const;
   void test(Attempt& attempt) const;
-  void commit(Attempt& attempt);
+  Outcome commit(Attempt& attempt);
   void make_pending_known();
 
   const Mesh* mesh_;
