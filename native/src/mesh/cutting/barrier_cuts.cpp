@@ -256,7 +256,7 @@ void BarrierCuts::divide_inside(Index face, std::vector<Index>& nodes) {
   std::vector<Vec2> at;
   for (const Index node : nodes) at.push_back(weights(face, node));
   const auto place = [&](Index i) { return position(mesh_, {face, from_weights(at[i])}); };
-  std::vector<std::array<Index, 2>> too_long;
+  std::vector<std::array<Index, 3>> too_long;  // ends and a triangle
   double limit = mesh_.length(3 * face) + mesh_.length(3 * face + 1);
   for (int round = 0; round < k_most_rounds; ++round) {
     limit = std::max(limit * k_shorter, fineness_->length);
@@ -267,13 +267,14 @@ void BarrierCuts::divide_inside(Index face, std::vector<Index>& nodes) {
         const Index from = flat[k], to = flat[(k + 1) % 3];
         if (from > to || flat_.neighbor(t, k) == k_none) continue;
         const Vec3 a = place(from), b = place(to);
-        if ((b - a).squaredNorm() > limit * limit && fineness_->is_near(a, b)) too_long.push_back({from, to});
+        if ((b - a).squaredNorm() > limit * limit && fineness_->is_near(a, b))
+          too_long.push_back({from, to, static_cast<Index>(t)});
       }
     }
     if (too_long.empty() && limit == fineness_->length) return;
-    for (const auto& [from, to] : too_long) {
+    for (const auto& [from, to, triangle] : too_long) {
       const Vec2 middle = (at[from] + at[to]) / 2;
-      if (flat_.add(middle) < static_cast<Index>(at.size())) continue;
+      if (flat_.add(middle, triangle) < static_cast<Index>(at.size())) continue;
       at.push_back(middle);
       nodes.push_back(new_node(face, from_weights(middle)));
     }

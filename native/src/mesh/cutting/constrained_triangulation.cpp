@@ -42,7 +42,8 @@ void ConstrainedTriangulation::join(Index h, Index twin) {
   if (twin != k_none) twins_[twin] = h;
 }
 
-Index ConstrainedTriangulation::add(const Vec2& weights) {
+Index ConstrainedTriangulation::add(const Vec2& weights, Index near_triangle) {
+  if (near_triangle != k_none) last_ = near_triangle;
   const auto point = static_cast<Index>(weights_.size());
   weights_.push_back(weights);
   places_.push_back((1 - weights.x() - weights.y()) * shape_[0] + weights.x() * shape_[1] + weights.y() * shape_[2]);

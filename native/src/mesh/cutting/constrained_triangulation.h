@@ -18,8 +18,9 @@ class ConstrainedTriangulation {
   /// which of the possible triangulations is the best (Delaunay's, as far as the pieces let it).
   void begin(const std::array<Vec2, 3>& shape);
 
-  /// The number of the point; that of an equal one when there is one. O(square root of n) for neighbors in turn.
-  Index add(const Vec2& weights);
+  /// The number of the point; that of an equal one when there is one. O(square root of n) for neighbors in turn, O(1)
+  /// with a triangle near it.
+  Index add(const Vec2& weights, Index near_triangle = k_none);
 
   /// Makes the straight piece an edge, or several where it passes points. False when it crosses an earlier one.
   bool connect(Index from, Index to);
