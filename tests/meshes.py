@@ -8,6 +8,7 @@ Each is a `Case`: arrays, what is known about them in closed form, and `mesh`, b
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -260,6 +261,24 @@ def voxels(occupied: NDArray[np.bool_]) -> Arrays:
     quads = inverse.reshape(-1, 4)
     triangles = np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
     return points.astype(np.float64) - 1, triangles.astype(np.int32)
+
+
+def bored_plate(around: int = 48, radius: float = 0.9, height: float = 0.5) -> Arrays:
+    """A square plate of side 2 with a round hole, parted as modelers do: each corner to a quarter of the rim."""
+    angles = 2 * np.pi * (np.arange(around) + 0.5) / around
+    rim = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    outline = np.vstack([[[1, 1], [-1, 1], [-1, -1], [1, -1]], rim])
+    count, quarter = len(outline), around // 4
+    top = []
+    for corner in range(4):
+        on_rim = [4 + (corner * quarter + i) % around for i in range(quarter + 1)]
+        top += [(corner, b, a) for a, b in itertools.pairwise(on_rim)]
+        top.append((corner, (corner + 1) % 4, on_rim[-1]))
+    walls = [(i, (i + 1) % 4) for i in range(4)] + [(4 + (i + 1) % around, 4 + i) for i in range(around)]
+    bottom = [(count + a, count + c, count + b) for a, b, c in top]
+    sides = [side for a, b in walls for side in ((b, a, count + a), (b, count + a, count + b))]
+    vertices = np.vstack([np.column_stack([outline, np.full(count, z)]) for z in (height, 0.0)])
+    return _arrays(vertices, top + bottom + sides)
 
 
 def double_torus() -> Arrays:

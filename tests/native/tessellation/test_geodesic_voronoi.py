@@ -288,3 +288,28 @@ def test_rays_through_many_vertices_are_followed_once() -> None:
     assert time.process_time() - start < 5  # 0.1 on a slow machine, 18 without the rule
     assert cells.areas.sum() == pytest.approx(mesh.area, rel=1e-9)
     np.testing.assert_array_equal(cells.vertex_cell[sites], np.arange(len(sites)))
+
+
+@pytest.mark.parametrize("count", [100, 1000, 3000])
+@pytest.mark.parametrize(("around", "radius", "height"), [(48, 0.9, 0.5), (48, 0.9, 0.05), (24, 0.95, 0.2)])
+def test_long_faces_beside_a_hole(around: int, radius: float, height: float, count: int) -> None:
+    """What a site sees the long way round a hole is not where its cell goes on; a fifth of the surface was lost."""
+    mesh = sb.Mesh(*meshes.bored_plate(around, radius, height))
+    graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
+    sites, points = sb.sample(mesh, count, seed=3), sb.sample(mesh, 20_000, seed=9)
+    cells, exact = sb.geodesic_voronoi(graph, sites), sb.geodesic_voronoi(graph, sites, exact=True)
+    apart = np.abs(cells.areas - exact.areas)
+    assert apart.max() <= 0.6 * exact.areas.mean()
+    assert apart.sum() <= 2 * 0.05 * mesh.area
+    assert np.count_nonzero(cells.cells_at(points) != exact.cells_at(points)) <= 0.06 * len(points)
+    if count >= 1000:  # cells that are no longer than the hole is wide
+        assert apart.max() <= 0.25 * exact.areas.mean()
+        assert np.count_nonzero(cells.cells_at(points) != exact.cells_at(points)) <= 0.0025 * len(points)
+
+
+def test_even_cells_of_long_faces() -> None:
+    mesh = sb.Mesh(*meshes.bored_plate())
+    cells = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, accuracy=5e-3), count=1000, max_iterations=60).cells
+    assert 0.75 * cells.areas.mean() <= cells.areas.min()
+    assert cells.areas.max() <= 1.3 * cells.areas.mean()
+    assert not cells.dual("strict").issues

@@ -39,7 +39,8 @@ enum class CellLengths { of_ways, smooth };
 ///                      its distance, in any direction
 /// A vertex beside the cell (VerticesBeside), whose label is another, by the first of these:
 ///   1. center          it is the site: two sites on one vertex
-///   2. seen            an arc of the site's own leads there, as one does to each corner of its face
+///   2. seen            an arc of the site's own leads there, as one does to each corner of its face, and no way over a
+///                      node that it owns or sees is shorter
 ///   3. across an edge  beyond an edge of the cell, the one across which the site is seen best
 ///   4. beside an edge  beyond an edge with one end in the cell, the other placed by 3
 ///   5. after an arc    after the cell's vertex before on the shortest way: a direction where 3 and 4 have none, and

@@ -55,16 +55,47 @@ bool VerticesBeside::find(Index site, Index node, SiteVector& vector) {
   if (const Index seen = find_seen(site, node); seen != k_none) {
     const PackedVec2& place = seen_vertices.places[seen];
     vector = {place, place.norm()};
-    return true;
+    if (!has_shorter_way(node, site, vector.distance)) return true;
   }
   VertexPlace place;
   const bool found = place_by_cell(node, site, place);
   if (found) vector = maps_.vector_of(place);
-  if (site_ == site) {
+  if (site_ == site && table_[node].round != round_) {
     table_[node] = {round_, ~static_cast<Index>(answers_.size())};
     answers_.push_back({found, vector});
   }
   return found;
+}
+
+/// Tells whether a way over a node that the site owns or sees is shorter than the straight line to one that it sees:
+/// the line may lead round the other side of a hole. Where the site owns neighbors of the node their ways decide, which
+/// are few to ask; else those over all of its arcs.
+bool VerticesBeside::has_shorter_way(Index node, Index site, double straight) const {
+  const double least = straight * (1 - k_arc_rounding);
+  bool owns_neighbor = false, is_shorter = false;
+  const auto look = [&](Index other, const Vec2& edge) {
+    if (labels_.label(other) != site) return;
+    owns_neighbor = true;
+    const double rest = least - maps_.place(other).distance;
+    is_shorter = is_shorter || (rest > 0 && edge.squaredNorm() < rest * rest);
+  };
+  for (const VertexRings::Wedge& wedge : maps_.rings().around(node)) {
+    look(wedge.from, wedge.apex);
+    look(wedge.to, wedge.apex - Vec2(wedge.length, 0));
+  }
+  if (owns_neighbor) return is_shorter;
+  for (std::int64_t arc = arcs_.first(node); arc < arcs_.first(node + 1); ++arc) {
+    const Index other = arcs_.target(arc);
+    const double rest = least - arcs_.length(arc);
+    if (rest <= 0) continue;
+    if (labels_.label(other) == site) {
+      if (maps_.place(other).distance < rest) return true;
+    } else if (const Index seen = find_seen(site, other);
+               seen != k_none && maps_.seen().of(site).places[seen].squaredNorm() < rest * rest) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Places a node next to vertices of the site's own cell, if it has any. A node across or beside an edge of theirs has
@@ -158,8 +189,9 @@ bool VerticesBeside::place_by_arc(Index node, Index site, bool has_direction, Ve
 VertexPlace VerticesBeside::place_after_seen(Index node, Index site, Index seen) {
   const Index before = maps_.seen().of(site).nodes[seen];
   const VertexPlace at_seen = VertexPlace::straight(maps_.seen().of(site).places[seen]);
-  const VertexPlace place = placer_.place_after(node, before, at_seen, maps_.seen().direction_back(site, seen));
-  return place.anchor == before ? at_seen : place;
+  VertexPlace place = placer_.place_after(node, before, at_seen, maps_.seen().direction_back(site, seen));
+  if (place.anchor != before) return place;
+  return {at_seen.at, place.distance, k_none, VertexPlace::k_after_another};
 }
 
 /// Tells whether the arcs from all of the site's nodes, and, where wanted, from those that it sees, end where the node

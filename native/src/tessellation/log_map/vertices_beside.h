@@ -48,6 +48,7 @@ class VerticesBeside {
     SiteVector vector;
   };
   Index find_seen(Index site, Index node) const;
+  bool has_shorter_way(Index node, Index site, double straight) const;
   bool place_by_cell(Index node, Index site, VertexPlace& place);
   bool place_across(Index node, Index site, bool deep, VertexPlace& place);
   bool place_across_own(Index node, Index site, VertexPlace& place);
