@@ -34,7 +34,7 @@ def test_not_a_mesh(operator):
     curve = bpy.data.objects.new("Line", bpy.data.curves.new("Line", "CURVE"))
     bpy.context.scene.collection.objects.link(curve)
     bpy.context.view_layer.objects.active = curve
-    refuse("'Line' is no mesh but of the type Curve", "choose a mesh", operator=operator)
+    refuse("'Line' is no mesh but of the type Curve", "Convert > Mesh", "choose a mesh", operator=operator)
 
 
 @pytest.mark.parametrize("operator", OPERATORS)

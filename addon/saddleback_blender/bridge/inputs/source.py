@@ -18,6 +18,9 @@ from .mesh_in import mesh_of
 # Share of the volume of its edge lengths below which a transform's parallelepiped counts as flat.
 FLAT_TRANSFORM = 1e-9
 
+CONVERTIBLE = {"CURVE", "SURFACE", "FONT", "META"}
+"""The types of objects that Blender makes meshes of at a press."""
+
 
 def active_object(context: bpy.types.Context) -> Any:
     """The active object or None: of `Context.temp_override` where that names one, else of the view layer."""
@@ -33,7 +36,8 @@ def why_not(context: bpy.types.Context) -> str:
         return "Choose a mesh object first: there is no active object"
     if active.type != "MESH":
         kind = active.bl_rna.properties["type"].enum_items[active.type].name
-        return f"'{active.name}' is no mesh but of the type {kind}: choose a mesh object"
+        convert = "press Object > Convert > Mesh, or " if active.type in CONVERTIBLE else ""
+        return f"'{active.name}' is no mesh but of the type {kind}: {convert}choose a mesh object"
     if active.mode == "EDIT":
         return f"'{active.name}' is in Edit Mode: leave it first (Tab)"
     return ""
