@@ -98,7 +98,10 @@ class FaceCut {
   void mark(Index from, Index to, Index edge, std::vector<Index>& marked) {
     along_.clear();
     flat_.edges_along(from, to, along_);
-    for (const Index h : along_) marked[h] = edge;
+    for (const Index h : along_) {
+      if (marked[h] != k_none && marked[h] != edge) is_whole_ = false;
+      marked[h] = edge;
+    }
   }
 
   /// Finds the site of each triangle; k_none for all where no piece is a side of one.
@@ -127,7 +130,8 @@ class FaceCut {
     }
   }
 
-  /// Takes each triangle for itself where pieces cross each other, being those of cells narrower than the tolerance.
+  /// Takes each triangle for itself where pieces cross or lie on each other, being those of cells narrower than the
+  /// tolerance.
   void gather_all(std::size_t t) {
     part_ = {static_cast<Index>(t)};
     sites_.clear();
@@ -210,7 +214,7 @@ class FaceCut {
   std::vector<Meeting> meetings_;
   std::vector<Index> found_, along_, left_of_, right_of_, site_, part_, sites_;
   std::vector<bool> is_seen_;
-  bool is_whole_ = true;  ///< no piece crosses another
+  bool is_whole_ = true;  ///< no piece crosses another, or lies on it
 };
 
 /// Gives sites to faces that no edge parts from their neighbors.
