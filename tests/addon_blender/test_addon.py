@@ -90,6 +90,9 @@ QUIT = """
 """
 
 
+@pytest.mark.skipif(
+    bpy.app.version < (4, 3) and not bpy.app.binary_path, reason="that module crashes at its end with anybody's panel"
+)
 @pytest.mark.parametrize("moment", [0.05, 1.0])
 def test_quitting_during_a_run_is_clean_and_quick(tmp_path, moment):
     script = tmp_path / "quit.py"
