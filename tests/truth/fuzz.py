@@ -267,6 +267,8 @@ def main() -> int:
     if arguments.replay:
         return replay(checks[arguments.replay[0]], int(arguments.replay[1]))
     chosen = [check for check in checks.values() if fnmatch.fnmatch(check.name, arguments.only)]
+    if not chosen:
+        parser.error(f"no check is named {arguments.only}")
     print(f"{len(chosen)} checks, seed {arguments.seed}", flush=True)
     done = run(chosen, arguments.seconds, arguments.seed, arguments.workers)
     for name, words in sorted(done.by_check.items()):

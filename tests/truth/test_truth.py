@@ -68,6 +68,8 @@ def test_random_input_meets_the_truths():
         ("relaxation.values_between_places", 5612356),  # two places 1e-5 apart pulled a third
         ("ways.maps_hold_what_lies_beside", 20270245),  # an edge cut at the radius saw past an end of the curve
         ("ways.maps_hold_what_lies_beside", 20275565),
+        ("ways.maps_of_narrow_bands", 6),  # slivers of a curve's parts, all halved to the end: no end
+        ("ways.maps_of_narrow_bands", 11),
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them
         ("baked.texels_of_cells", 30508662),  # rays went round a spike of 6e-9 radians without end, never at its tip
         ("sweeps.ties_of_a_circle", 31001546),  # six arcs vanish in the moment in which a site is touched

@@ -430,3 +430,57 @@ def maps_hold_what_lies_beside(mesh: sb.Mesh, rng: Random) -> None:
     beside, there, _ = covered(mesh, graph, curve, radius, found, 400, rng)
     assert there >= 0.9 * beside - 3, f"{there} of {beside} points"
     assert abs(found.coverage - there / max(beside, 1)) <= 0.1 + 3 / max(beside, 1)
+
+
+@guards("stroke_map")
+def maps_of_narrow_bands(mesh: sb.Mesh, rng: Random) -> None:
+    """A radius down to 1e-4 of the extent, along ways over the surface and along bent lines within a face down to 1e-4
+    of it: nothing folds, of lines within the face distances are Euclid's, and there are no more triangles than are
+    told. A radius that asks for too many is refused, with the least one that works.
+    """
+    size = float(np.ptp(mesh.vertices, axis=0).max())
+    is_in_face = bool(rng.random() < 0.6)
+    if is_in_face:
+        face = int(rng.integers(mesh.face_count))
+        share = 10 ** rng.uniform(-4, 0)
+        center, around = rng.dirichlet([2.0, 2.0, 2.0]), rng.dirichlet([1.0, 1.0, 1.0], int(rng.integers(2, 5)))
+        points = sb.SurfacePoints(np.full(len(around), face, np.int32), center + share * (around - center))
+        if np.linalg.norm(np.diff(points.positions(mesh), axis=0), axis=1).min() < 1e-3 * share * longest_edge(mesh):
+            return
+        curve = sb.SurfaceCurve(mesh, points)
+        radius = curve.length * 10 ** rng.uniform(-2.5, 0)
+    else:
+        way = random_curve(mesh, rng)
+        if way is None:
+            return
+        curve, radius = way, size * 10 ** rng.uniform(-4, -1.5)
+    try:
+        found = sb.stroke_map(mesh, curve, radius)
+    except sb.InputError as error:
+        if "triangles" not in str(error):
+            raise
+        least = float(str(error).rsplit(" ", 1)[1])
+        assert radius < least
+        job = sb.Job()
+        job.cancel()
+        try:
+            sb.stroke_map(mesh, curve, least, job=job)
+        except sb.Cancelled:
+            return  # not refused any more
+        raise AssertionError("a cancelled job went on") from None
+    assert flipped(found) == 0
+    if len(found.triangles) < 20_000:
+        assert overlapping(found) == 0
+    np.testing.assert_allclose(found.points.positions(mesh), found.vertices, atol=1e-9 * size)
+    assert (np.abs(found.uv[:, 1]) <= radius).all()
+    if not is_in_face or least_angle(mesh) < NEEDLE or (found.face_origin != face).any():
+        return
+    corners = mesh.vertices[mesh.triangles[face]]
+    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    axes = np.stack([corners[1] - corners[0], np.cross(across, corners[1] - corners[0])])
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    line, places = ((at - corners[0]) @ axes.T for at in (points.positions(mesh), found.vertices))
+    wanted = np.array([to_polyline(place, line)[0][0] for place in places])
+    off = np.abs(np.abs(found.uv[:, 1]) - wanted)
+    assert off.max() <= (1e-4 if len(line) == 2 else 1 / 3) * radius
+    assert np.mean(off <= 1e-2 * radius) > 0.9

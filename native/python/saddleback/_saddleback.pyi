@@ -1748,7 +1748,7 @@ def stroke_map(
         mesh: the Mesh.
         curve: a SurfaceCurve, a GeodesicPath, or its points as a SurfacePoints or vertices (taken as an open curve). A
             closed one is cut open where it starts.
-        radius: mesh units, finite and above 0.
+        radius: mesh units, finite and at least 1/8000 of the curve's length.
         job: progress and cancellation.
 
     Returns:
@@ -1757,8 +1757,9 @@ def stroke_map(
         what no such map holds, about places where the distance is largest; `coverage` tells how much is there.
 
     Raises:
-        InputError: a radius that is not finite and above 0, no curve, a curve of another mesh, a curve that crosses or
-            touches itself (the message tells where).
+        InputError: a radius that is not finite and above 0, or less than 1/8000 of the curve's length, for which the map may
+            take more than a million triangles (the message tells the least that works); no curve, a curve of another mesh, a
+            curve that crosses or touches itself (the message tells where).
         Cancelled: the job was.
 
     Notes:

@@ -34,6 +34,12 @@ constexpr double k_least_weight = 1e-3;
 constexpr double k_most_cotangent = 1e9, k_least_edge = std::numeric_limits<double>::min();
 // What a vertex on the free border gives beyond what it gets, at least, as a share of that.
 constexpr double k_least_surplus = 1e-3;
+// Triangles of a map for each radius along the curve where all faces are larger, and how many it may have: by then it
+// takes ten seconds and a gigabyte.
+constexpr double k_triangles_per_radius = 125, k_most_triangles = 1e6;
+constexpr double k_printed = 1e-8;  // what messages round numbers by, at most
+// A band is long from so many times its width on one side on.
+constexpr double k_long = 16;
 // As a share of the length: nearest points this near to an end of the curve are that end.
 constexpr double k_at_end = 1e-9;
 
@@ -120,13 +126,21 @@ void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide&
   const Weights weights(sheet, parted, swept, stage);
   const std::vector<Index>& vertices = weights.vertices();
   std::vector<Index> row(vertices.size(), k_none), unknowns;
+  // Long bands are halved across on the map: in space they may turn back beside themselves, or run along the cut.
   std::vector<Vec3> places;
+  const bool is_long = std::abs(at_end - at_start) > k_long * sheet.distance[parted.nodes[swept.vertices.back()]];
+  const auto place_on_map = [&](Index i) {
+    double foot = sheet.along[parted.nodes[vertices[i]]];
+    for (const auto& [number, weight] : weights.row(i))
+      if (std::isnan(foot)) foot = sheet.along[parted.nodes[vertices[number]]];
+    return Vec3(std::isnan(foot) ? at_start : foot, sheet.distance[parted.nodes[vertices[i]]], 0);
+  };
   for (Index i = 0; i < static_cast<Index>(swept.vertices.size()); ++i) {
     const Index v = vertices[i];
     if (swept.held[v] == Held::nothing) {
       row[i] = static_cast<Index>(unknowns.size());
       unknowns.push_back(i);
-      places.push_back(sheet.positions[parted.nodes[v]]);
+      places.push_back(is_long ? place_on_map(i) : sheet.positions[parted.nodes[v]]);
     } else {
       along[v] = swept.held[v] == Held::at_start ? at_start : at_end;
     }
@@ -274,6 +288,11 @@ StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius,
     throw InputError("curve: it lies on another mesh");
   if (!(radius > 0) || !std::isfinite(radius))
     throw InputError(message("radius: wanted a finite distance above 0, got ", radius));
+  if (const double most = k_most_triangles / k_triangles_per_radius; curve.length() > most * radius)
+    throw InputError(message("radius: ", radius, " is small beside a curve ", curve.length(),
+                             " long: the map may take ", std::round(k_triangles_per_radius * curve.length() / radius),
+                             " triangles, of ", k_most_triangles, " at most; the least radius that works is ",
+                             curve.length() / most * (1 + k_printed)));
   const JobStage stage(job, "Mapping along the curve");
   const double size = k_size * radius, reach = radius + size;
   const charts::NearPart near = charts::near_part(mesh, curve, radius, stage.part(0, 0.1));

@@ -36,13 +36,13 @@ constexpr double k_nowhere = std::numeric_limits<double>::quiet_NaN();
 /// Points along a curve, so near to each other that balls about them hold all that is within a radius of it.
 class Beads {
  public:
-  Beads(const SurfaceCurve& curve, double radius) : reach_(radius * (1 + k_spacing)) {
+  Beads(const SurfaceCurve& curve, double radius) : reach_(radius * (1 + k_spacing)), step_(2 * k_spacing * radius) {
     double next = 0;
     for (const CurveSegment& s : curve.segments()) {
       const Vec3 a = position(curve.mesh(), {s.face, s.begin}), b = position(curve.mesh(), {s.face, s.end});
       while (next <= s.start + s.length) {
         beads_.push_back(a + (next - s.start) / s.length * (b - a));
-        next += 2 * k_spacing * radius;
+        next += step_;
       }
       if (&s == &curve.segments().back()) beads_.push_back(b);
     }
@@ -59,13 +59,19 @@ class Beads {
 
  private:
   static constexpr double k_spacing = 0.125;  ///< half of it, as a share of the radius
-  bool may_reach(const Vec3& center, double size) const {
-    const double reach = reach_ + size;
-    return std::ranges::any_of(beads_,
-                               [&](const Vec3& bead) { return (bead - center).squaredNorm() <= reach * reach; });
+  bool may_reach(const Vec3& center, double size) const { return may_reach(center, reach_ + size, 0, beads_.size()); }
+  /// Halves a run of beads unless it is farther away than it is long on the one side of its middle.
+  bool may_reach(const Vec3& center, double reach, std::size_t begin, std::size_t end) const {
+    if (begin == end) return false;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const double away = (beads_[middle] - center).norm();
+    if (away <= reach) return true;
+    // By one step more, as faces of a curve may hang together up to rounding alone.
+    if (away - reach > step_ * static_cast<double>(middle - begin + 1)) return false;
+    return may_reach(center, reach, begin, middle) || may_reach(center, reach, middle + 1, end);
   }
 
-  double reach_;
+  double reach_, step_;
   std::vector<Vec3> beads_;
 };
 
@@ -202,6 +208,7 @@ Mesh mesh_with_areas(const std::vector<double>& xyz, const std::vector<Index>& t
   bool has_areas = true;
   std::vector<double> lengths;
   for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    stage.check();
     const Vec3 a = at(t), b = at(t + 1), c = at(t + 2);
     has_areas &= !is_degenerate_face(a, b, c);
     lengths.insert(lengths.end(), {(b - a).norm(), (c - b).norm(), (a - c).norm()});
@@ -375,7 +382,7 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   for (const SurfaceCurve& piece : pieces) all.push_back(&piece);
   // Beyond the radius as well, that a triangle with a part within it has no vertex that is farther beyond than `size`.
   const Beads beads(curve, radius + size);
-  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }};
+  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }, stage};
   BarrierCuts cuts(near, {}, all, "curve: it", &fineness);
   Sheet sheet;
   for (Index f = 0; f < near.face_count(); ++f) {
@@ -405,6 +412,7 @@ void measure(Sheet& sheet, bool closed, double length, double reach, const JobSt
   std::vector<double> xyz;
   std::vector<Index> triangles;
   for (const Triangle& t : sheet.triangles) {
+    stage.check();
     for (const Index corner : t) {
       if (vertex[corner] == k_none) {
         vertex[corner] = static_cast<Index>(node.size());
@@ -414,16 +422,16 @@ void measure(Sheet& sheet, bool closed, double length, double reach, const JobSt
       triangles.push_back(vertex[corner]);
     }
   }
-  const Mesh fine = mesh_with_areas(xyz, triangles, stage);
+  const Mesh fine = mesh_with_areas(xyz, triangles, stage.part(0, 0.2));
   SurfacePoints line;
   for (const Index c : sheet.curve) line.push_back(at_vertex(fine, vertex[c]));
   if (closed) line.pop_back();
   const SurfaceCurve curve(fine, std::move(line), closed);
-  const Unfolding unfolding(fine, 1, stage);
+  const Unfolding unfolding(fine, 1, stage.part(0.2, 0.2));
   CurveWindows windows(unfolding);
   std::vector<CurveFoot> feet;
-  windows.from_curve(curve, {.radius = reach}, feet, stage.part(0, 0), nullptr,
-                     [&](double distance, Index) { stage.update(distance / reach); });
+  windows.from_curve(curve, {.radius = reach}, feet, stage.part(0.2, 0.2), nullptr,
+                     [&](double distance, Index) { stage.update(0.2 + 0.8 * distance / reach); });
   sheet.distance.assign(sheet.points.size(), std::numeric_limits<double>::infinity());
   sheet.along.assign(sheet.points.size(), k_nowhere);
   sheet.side.assign(sheet.points.size(), 0);

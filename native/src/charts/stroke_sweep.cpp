@@ -210,6 +210,10 @@ PartedSheet::PartedSheet(const Sheet& sheet, const JobStage& stage) {
     corners.join(next(h), t);
   }
   vertices.resize(count);
+  std::vector<std::uint8_t> is_on_line(sheet.points.size(), 0);
+  for (const Index node : sheet.curve) is_on_line[node] = 1;
+  for (const std::vector<Index>& line : sheet.across)
+    for (const Index node : line) is_on_line[node] = 1;
   for (Index h = 0; h < count; ++h) {
     stage.check();
     const Index root = corners.root(h), node = halfedge_from(sheet.triangles, h);
@@ -219,7 +223,8 @@ PartedSheet::PartedSheet(const Sheet& sheet, const JobStage& stage) {
     } else {
       vertices[h] = vertices[root];
     }
-    by_nodes_.emplace_back(directed(node, halfedge_to(sheet.triangles, h)), h);
+    if (const Index to = halfedge_to(sheet.triangles, h); is_on_line[node] && is_on_line[to])
+      by_nodes_.emplace_back(directed(node, to), h);
   }
   std::ranges::sort(by_nodes_);
   stage.check();

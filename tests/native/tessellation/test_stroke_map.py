@@ -98,6 +98,33 @@ def test_needles_side_by_side_become_ladders():
     assert len(found.triangles) < 2.5 * least
 
 
+LARGE_FACES = sb.Mesh(*meshes.grid(6, 6))
+
+
+def across_large_faces() -> sb.SurfaceCurve:
+    points = sb.project(LARGE_FACES, np.array([[0.13, 0.22, 0], [0.87, 0.71, 0]]))
+    return sb.SurfaceCurve(LARGE_FACES, sb.ExactField(LARGE_FACES, points[0]).path(points[1]).surface)
+
+
+@pytest.mark.parametrize("radius", [1e-2, 1e-3])
+def test_a_narrow_band_on_large_faces_has_triangles_by_its_length_alone(radius: float):
+    curve = across_large_faces()
+    found = sb.stroke_map(LARGE_FACES, curve, radius)
+    assert flipped(found) == 0
+    assert found.coverage > 0.9999
+    assert len(found.triangles) < 125 * curve.length / radius
+
+
+def test_a_radius_that_takes_too_many_triangles_is_told_with_the_least_that_works():
+    curve = across_large_faces()
+    with pytest.raises(sb.InputError, match=r"radius: 2e-05 .* 5547029 triangles, of 1000000 at most") as told:
+        sb.stroke_map(LARGE_FACES, curve, 2e-5)
+    job = sb.Job()
+    job.cancel()
+    with pytest.raises(sb.Cancelled):
+        sb.stroke_map(LARGE_FACES, curve, float(str(told.value).rsplit(" ", 1)[1]), job=job)
+
+
 def test_no_map_between_parts_of_the_curve_that_come_near_to_each_other():
     """A stroke that turns back beside itself: each part has its half of the wedge between, no triangle has both."""
     corners = np.array([[0.1, 0.5, 0], [0.9, 0.503, 0], [0.15, 0.52, 0]])

@@ -25,9 +25,9 @@ struct StrokeMap {
 /// cut along the curve, where it ends (at right angles), at the radius and at the cut locus, across which the patch
 /// does not hang together; they are divided where they are large beside the radius. Left out is what lies beyond the
 /// ends of the curve, and what no map of this kind can hold: about places where the distance has a maximum. Of a closed
-/// curve the map is cut open where it starts. \throw InputError for a radius that is not finite and above 0, a curve of
-/// another mesh, a curve that crosses or touches itself (telling where); Cancelled. O(n^1.5) for n vertices of the
-/// patch, and O(F).
+/// curve the map is cut open where it starts. \throw InputError for a radius that is not finite and above 0, or less
+/// than 1/8000 of the curve's length (the map may take more than a million triangles), a curve of another mesh, a curve
+/// that crosses or touches itself (telling where); Cancelled. O(n^1.5) for n vertices of the patch, and O(F).
 StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius, Job* job = nullptr);
 
 }  // namespace saddleback

@@ -245,15 +245,16 @@ void WavefrontDistances::run(const RayLimits& limits, const JobStage& stage, con
       for (const Index vertex : due_) bend(vertex);
       due_.clear();
     }
-  } while (cover_again());
+  } while (cover_again(stage));
   std::ranges::copy_if(reached_, std::back_inserter(settled_),
                        [this](Index vertex) { return distances_[vertex] <= limits_.radius; });
 }
 
 /// Tells whether some vertex is farther than by an edge from its neighbor: see ExactPropagation::cover_again.
-bool WavefrontDistances::cover_again() {
+bool WavefrontDistances::cover_again(const JobStage& stage) {
   if (std::isfinite(limits_.edges)) return false;  // rays stop on purpose
   for (const Index vertex : reached_) {
+    stage.check();
     const auto look = [&](Index to, double length) {
       const double way = distances_[vertex] + length;
       if (way <= limits_.radius && way < distances_[to] * k_shorter) due_.push_back(vertex);

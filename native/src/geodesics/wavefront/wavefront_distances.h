@@ -96,7 +96,7 @@ class WavefrontDistances {
   void improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge);
   void push(const RayWindow& window);
   void drain(BlockQueue<RayWindow>::Block* block, const JobStage& stage);
-  bool cover_again();
+  bool cover_again(const JobStage& stage);
   void bend(Index vertex);
   double angle_back(Index vertex) const;
   void emit_from(Index vertex, double begin, double end);

@@ -39,12 +39,9 @@ BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>>
   std::map<Index, std::vector<Index>> by_face;
   for (std::size_t i = 0; i < pieces_.size(); ++i) by_face[pieces_[i].face].push_back(static_cast<Index>(i));
   for (const auto& [face, pieces] : by_face) cross(pieces);
-  if (fineness_) {
-    divide_pieces();
-    divide_edges();
-  }
   // Only now are all nodes known that a barrier may pass.
   follow_curves(curves);
+  if (fineness_) divide_edges();
   for (std::size_t i = 0; i < edges.size(); ++i) add_given_edge(given_edge(mesh, edges[i], i));
   halve_lonely_edges();
   for (const Edge& edge : edges_) edges_in_[edge.face].push_back(edge);
@@ -52,6 +49,7 @@ BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>>
 
 void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
   std::vector<Index> chain;
+  std::vector<std::pair<Index, Index>> within;  // faces and nodes that no other piece passes
   for (std::size_t i = 0; i < pieces_.size();) {
     const Index curve = pieces_[i].curve, first = pieces_[i].from;
     std::unordered_set<Index> passed{first};
@@ -59,6 +57,7 @@ void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
     for (; i < pieces_.size() && pieces_[i].curve == curve; ++i) {
       const bool is_last = i + 1 == pieces_.size() || pieces_[i + 1].curve != curve;
       follow(pieces_[i], chain);
+      if (fineness_) divide(pieces_[i].face, chain, within);
       for (std::size_t k = 1; k < chain.size(); ++k) {
         const bool closes = is_last && k + 1 == chain.size() && curves[curve]->closed() && chain[k] == first;
         if (!passed.insert(chain[k]).second && !closes) refuse(curve, chain[k]);
@@ -67,6 +66,7 @@ void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
       }
     }
   }
+  for (const auto& [face, node] : within) inside_[face].push_back(node);
 }
 
 void BarrierCuts::add_edge(const Edge& edge) {
@@ -166,6 +166,7 @@ Index BarrierCuts::node_on(Index halfedge, double along) {
   barycentric[(h + 1) % 3] = along;
   const Index node = new_node(Mesh::face_of(h), barycentric);
   nodes.insert(place, {along, node});
+  followed_.face = k_none;
   return node;
 }
 
@@ -200,28 +201,40 @@ std::vector<Index> BarrierCuts::nodes_of(Index face) const {
 
 /// Makes nodes where pieces of one face cross.
 void BarrierCuts::cross(std::span<const Index> pieces) {
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Piece one = pieces_[pieces[i]];
-    const Vec2 a = weights(one.face, one.from), along = weights(one.face, one.to) - a;
+  std::vector<std::array<Vec2, 2>> ends;
+  for (const Index i : pieces)
+    ends.push_back({weights(pieces_[i].face, pieces_[i].from), weights(pieces_[i].face, pieces_[i].to)});
+  const Index face = pieces_[pieces.front()].face;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const Vec2 &a = ends[i][0], along = ends[i][1] - a;
     for (std::size_t j = 0; j < i; ++j) {
-      const Piece other = pieces_[pieces[j]];
-      const Vec2 c = weights(one.face, other.from), d = weights(one.face, other.to);
+      const auto& [c, d] = ends[j];
       const double from = area_between(along, c - a), to = area_between(along, d - a);
       if ((from > 0) == (to > 0)) continue;
       const Vec2 crossing = c + from / (from - to) * (d - c);
       const double share = (crossing - a).dot(along) / along.squaredNorm();
-      if (share > 0 && share < 1) node_at(one.face, normalized_barycentric(from_weights(crossing)));
+      if (share > 0 && share < 1) node_at(face, normalized_barycentric(from_weights(crossing)));
     }
   }
 }
 
-/// Makes nodes in pieces of curves that are too long.
-void BarrierCuts::divide_pieces() {
-  for (const auto& [face, curve, from, to] : pieces_) {
-    const Vec3 a = *barycentric_in(mesh_, points_[from], face), b = *barycentric_in(mesh_, points_[to], face);
+/// Makes nodes between those of a piece that are too far apart.
+void BarrierCuts::divide(Index face, std::vector<Index>& chain, std::vector<std::pair<Index, Index>>& within) {
+  std::vector<Index> finer{chain.front()};
+  for (std::size_t k = 1; k < chain.size(); ++k) {
+    const Vec3 a = *barycentric_in(mesh_, points_[chain[k - 1]], face),
+               b = *barycentric_in(mesh_, points_[chain[k]], face);
     const int parts = parts_of((position(mesh_, {face, b}) - position(mesh_, {face, a})).norm(), fineness_->length);
-    for (int i = 1; i < parts; ++i) node_at(face, a + i / static_cast<double>(parts) * (b - a));
+    for (int i = 1; i < parts; ++i) {
+      fineness_->stage.check();
+      const Vec3 between = a + i / static_cast<double>(parts) * (b - a);
+      const bool is_within = between.minCoeff() > k_meets;
+      finer.push_back(is_within ? new_node(face, between) : node_at(face, between));
+      if (is_within) within.emplace_back(face, finer.back());
+    }
+    finer.push_back(chain[k]);
   }
+  chain.swap(finer);
 }
 
 /// Makes nodes in edges that are too long, between those that are there: equal parts, as far as they are near.
@@ -254,41 +267,54 @@ void BarrierCuts::divide_edges() {
 /// Delaunay's [rivara1984].
 void BarrierCuts::divide_inside(Index face, std::vector<Index>& nodes) {
   std::vector<Vec2> at;
-  for (const Index node : nodes) at.push_back(weights(face, node));
-  const auto place = [&](Index i) { return position(mesh_, {face, from_weights(at[i])}); };
-  std::vector<std::array<Index, 3>> too_long;  // ends and a triangle
+  std::vector<Vec3> places;
+  const auto add = [&](const Vec2& weight) {
+    at.push_back(weight);
+    places.push_back(position(mesh_, {face, from_weights(weight)}));
+  };
+  for (const Index node : nodes) add(weights(face, node));
+  std::vector<std::array<Index, 3>> too_long;  // ends and a half-edge
   double limit = mesh_.length(3 * face) + mesh_.length(3 * face + 1);
   for (int round = 0; round < k_most_rounds; ++round) {
     limit = std::max(limit * k_shorter, fineness_->length);
     too_long.clear();
     for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
+      fineness_->stage.check();
       const Triangle flat = flat_.triangle(t);
       for (int k = 0; k < 3; ++k) {
         const Index from = flat[k], to = flat[(k + 1) % 3];
         if (from > to || flat_.neighbor(t, k) == k_none) continue;
-        const Vec3 a = place(from), b = place(to);
-        if ((b - a).squaredNorm() > limit * limit && fineness_->is_near(a, b))
-          too_long.push_back({from, to, static_cast<Index>(t)});
+        if ((places[to] - places[from]).squaredNorm() > limit * limit && fineness_->is_near(places[from], places[to]))
+          too_long.push_back({from, to, static_cast<Index>(3 * t) + k});
       }
     }
     if (too_long.empty() && limit == fineness_->length) return;
-    for (const auto& [from, to, triangle] : too_long) {
+    for (const auto& [from, to, h] : too_long) {
+      fineness_->stage.check();
+      // One that was exchanged since is made good by the node for which it was, or is there in the next round.
+      const Triangle flat = flat_.triangle(h / 3);
+      if (flat[h % 3] != from || flat[(h % 3 + 1) % 3] != to) continue;
       const Vec2 middle = (at[from] + at[to]) / 2;
-      if (flat_.add(middle, triangle) < static_cast<Index>(at.size())) continue;
-      at.push_back(middle);
+      if (flat_.add(middle, h / 3) < static_cast<Index>(at.size())) continue;
+      add(middle);
       nodes.push_back(new_node(face, from_weights(middle)));
     }
   }
 }
 
 /// The nodes that a piece passes, with its ends.
-void BarrierCuts::follow(const Piece& piece, std::vector<Index>& chain) const {
+void BarrierCuts::follow(const Piece& piece, std::vector<Index>& chain) {
+  if (followed_.face != piece.face) {
+    followed_ = {piece.face, nodes_of(piece.face), {}};
+    for (const Index node : followed_.nodes) followed_.weights.push_back(weights(piece.face, node));
+  }
   const Vec2 a = weights(piece.face, piece.from), along = weights(piece.face, piece.to) - a;
   const double length = along.norm();
   std::vector<OnEdge> passed;
-  for (const Index node : nodes_of(piece.face)) {
+  for (std::size_t i = 0; i < followed_.nodes.size(); ++i) {
+    const Index node = followed_.nodes[i];
     if (node == piece.from || node == piece.to) continue;
-    const Vec2 way = weights(piece.face, node) - a;
+    const Vec2 way = followed_.weights[i] - a;
     const double share = way.dot(along) / (length * length);
     if (share > 0 && share < 1 && std::abs(area_between(along, way)) <= k_meets * length)
       passed.push_back({share, node});

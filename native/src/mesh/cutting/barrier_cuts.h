@@ -7,8 +7,10 @@
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/mesh/surface_curve.h"
 
 #include "mesh/cutting/constrained_triangulation.h"
@@ -20,6 +22,7 @@ namespace saddleback {
 struct Fineness {
   double length;
   std::function<bool(const Vec3& a, const Vec3& b)> is_near;
+  JobStage stage;  ///< may be stopped
 };
 
 /// Nodes are the vertices of the mesh and, numbered after them, the points at which curves bend, meet or cross edges.
@@ -53,6 +56,12 @@ class BarrierCuts {
     Index node;
   };
 
+  struct FaceNodes {
+    Index face = k_none;
+    std::vector<Index> nodes;
+    std::vector<Vec2> weights;
+  };
+
   /// A barrier between two nodes that no other lies between.
   struct Edge {
     Index face, from, to;
@@ -69,11 +78,11 @@ class BarrierCuts {
   Vec2 weights(Index face, Index node) const;
   std::vector<Index> nodes_of(Index face) const;
   void cross(std::span<const Index> pieces);
-  void divide_pieces();
+  void divide(Index face, std::vector<Index>& chain, std::vector<std::pair<Index, Index>>& within);
   void divide_edges();
   void divide_inside(Index face, std::vector<Index>& nodes);
   void follow_curves(std::span<const SurfaceCurve* const> curves);
-  void follow(const Piece& piece, std::vector<Index>& chain) const;
+  void follow(const Piece& piece, std::vector<Index>& chain);
   void halve_lonely_edges();
   [[noreturn]] void refuse(Index curve, Index node) const;
 
@@ -88,6 +97,7 @@ class BarrierCuts {
   std::vector<Edge> edges_;                                 ///< that are barriers, each once
   std::unordered_set<std::uint64_t> barriers_;              ///< keys of these
   std::unordered_map<Index, std::vector<Edge>> edges_in_;   ///< of these, by face
+  FaceNodes followed_;                                      ///< of the piece that was followed last
   ConstrainedTriangulation flat_;
 };
 
