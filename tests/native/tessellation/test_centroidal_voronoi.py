@@ -585,3 +585,14 @@ def test_bad_curves() -> None:
     ):
         with pytest.raises(sb.InputError, match=words):
             sb.centroidal_voronoi(graph, **arguments)
+
+
+def test_many_cells_in_two_faces_take_little_longer_than_in_many() -> None:
+    square = np.array([(0.0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]), np.array([(0, 1, 2), (0, 2, 3)])
+    spent = []
+    for vertices, triangles in (square, meshes.grid(21, 21)):
+        graph = sb.SaddleVertexGraph(sb.Mesh(vertices, triangles))
+        start = time.process_time()
+        sb.centroidal_voronoi(graph, count=4000, max_iterations=5, threads=1)
+        spent.append(time.process_time() - start)
+    assert spent[0] < 5 * spent[1]  # 3 times; 7.5 where each cell is cut by all others of its face

@@ -148,12 +148,14 @@ class SharedFace {
   template <class Add>
   static void cut_in_two(const CandidateFace& first, const CandidateFace& second, Add&& add);
   bool is_beaten(std::span<const CellCandidate> candidates, std::size_t candidate) const;
-  CellMoments part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index rival);
+  CellMoments part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index at);
   void clip(const Vec3& lead);
+  bool may_cut(const Vec3& lead) const;
 
   std::vector<Vec3> squared_distances_;  ///< of all candidates
   std::vector<Index> rivals_;            ///< candidates that are nearest somewhere, as far as corners tell
   std::vector<Corner> polygon_, clipped_;
+  Vec3 least_, most_;  ///< coordinates of the polygon's corners
 };
 
 /// Tells whether a candidate is nowhere nearer than one of the others.
@@ -200,7 +202,8 @@ void SharedFace::integrate(const FaceShape& shape, std::span<const CellCandidate
     const Index a = rivals_[0], b = rivals_[1];
     cut_in_two({shape, candidates[a], squared_distances_[a]}, {shape, candidates[b], squared_distances_[b]}, add);
   } else {
-    for (const Index rival : rivals_) add(candidates[rival].site, part_of(shape, candidates, rival));
+    for (Index at = 0; at < std::ssize(rivals_); ++at)
+      add(candidates[rivals_[at]].site, part_of(shape, candidates, at));
   }
 }
 
@@ -241,17 +244,40 @@ void SharedFace::cut_in_two(const CandidateFace& first, const CandidateFace& sec
   add(rest.candidate.site, of_rest);
 }
 
-/// The part that the other rivals leave of the face.
-CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index rival) {
+/// The part that the other rivals leave of the face. Of many those come first whose numbers are next to its own: sites
+/// are numbered so that these are near, as a rule, and make it small enough for the others to be passed over.
+CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index at) {
+  constexpr Index k_few = 64;
+  const Index rival = rivals_[at];
   const CandidateFace face{shape, candidates[rival], squared_distances_[rival]};
   polygon_.resize(3);
   for (int i = 0; i < 3; ++i) polygon_[i].at = Vec3::Unit(i);
-  for (const Index other : rivals_)
-    if (other != rival) clip(squared_distances_[other] - face.squared_distance);
+  least_.setZero();
+  most_.setOnes();
+  const auto clip_by = [&](Index other) {
+    const Vec3 lead = squared_distances_[other] - face.squared_distance;
+    if (may_cut(lead)) clip(lead);
+  };
+  const auto count = static_cast<Index>(rivals_.size());
+  if (count <= k_few) {
+    for (Index other = 0; other < count; ++other)
+      if (other != at) clip_by(rivals_[other]);
+  }
+  for (Index step = 1; step < count && count > k_few; ++step) {
+    if (at >= step) clip_by(rivals_[at - step]);
+    if (at + step < count) clip_by(rivals_[at + step]);
+  }
   CellMoments sum;
   for (std::size_t i = 1; i + 1 < polygon_.size(); ++i)
     add_triangle(face, polygon_[0].at, polygon_[i].at, polygon_[i + 1].at, sum);
   return sum;
+}
+
+/// Tells whether another candidate may lead somewhere in the box about the polygon. Of the many rivals on a large face
+/// few do, once some have made the polygon small.
+bool SharedFace::may_cut(const Vec3& lead) const {
+  const double slope_1 = lead[1] - lead[0], slope_2 = lead[2] - lead[0];
+  return lead[0] + slope_1 * (slope_1 > 0 ? least_ : most_)[1] + slope_2 * (slope_2 > 0 ? least_ : most_)[2] <= 0;
 }
 
 /// Leaves of the polygon where another candidate does not lead.
@@ -265,6 +291,12 @@ void SharedFace::clip(const Vec3& lead) {
     clipped_.push_back({from.at + from.lead / (from.lead - to.lead) * (to.at - from.at), 0});
   }
   polygon_.swap(clipped_);
+  if (polygon_.empty()) return;
+  least_ = most_ = polygon_.front().at;
+  for (const Corner& corner : polygon_) {
+    least_ = least_.cwiseMin(corner.at);
+    most_ = most_.cwiseMax(corner.at);
+  }
 }
 
 /// The sums of a stretch of shared faces, of the few cells that are met there.

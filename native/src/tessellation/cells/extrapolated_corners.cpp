@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "support/planar.h"
 
@@ -52,10 +53,10 @@ std::optional<PackedVec2> ExtrapolatedCorners::seen_beyond(Index halfedge, const
 }
 
 /// Begins a search with what a site sees straight: no longer than it is, and nothing that is hidden.
-ExtrapolatedCorners::Search ExtrapolatedCorners::begin(Index site) const {
-  Search search;
+ExtrapolatedCorners::Search ExtrapolatedCorners::begin(Index site) {
+  Search search{{}, std::pmr::unordered_map<Index, Search::Reached>(&memory_)};
   const auto push = [&](Index node, const PackedVec2& at) {
-    search.queue.push({at.norm(), node, at.norm() > 0 ? PackedVec2(at.normalized()) : PackedVec2(1, 0)});
+    search.push({at.norm(), node, at.norm() > 0 ? PackedVec2(at.normalized()) : PackedVec2(1, 0)});
   };
   const SeenVertices& seen = maps_.seen().of(site);
   if (seen.center != k_none) push(seen.center, PackedVec2(PackedVec2::Zero()));
@@ -68,22 +69,32 @@ ExtrapolatedCorners::Search ExtrapolatedCorners::begin(Index site) const {
   return search;
 }
 
+/// Takes in a way unless one as short is known: vertices of large faces have many arcs, most of them of no use.
+void ExtrapolatedCorners::Search::push(const Step& step) {
+  double& known = reached[step.node].distance;
+  if (known <= step.distance) return;
+  known = step.distance;
+  queue.push(step);
+}
+
 /// Follows the shortest way in the graph, as if it went on as it begins.
 PackedVec2 ExtrapolatedCorners::along_arcs(Index site, Index node) {
   auto entry = searches_.find(site);
   if (entry == searches_.end()) entry = searches_.emplace(site, begin(site)).first;
   Search& search = entry->second;
   const ArcRows& arcs = maps_.graph().arcs();
-  while (!search.reached.contains(node)) {
-    if (search.reached.size() % 64 == 0) stage_.check();
+  for (std::size_t steps = 0;; ++steps) {
+    if (const auto found = search.reached.find(node); found != search.reached.end() && found->second.is_settled)
+      return found->second.place;
+    if (steps % 64 == 0) stage_.check();
     const Search::Step step = search.queue.top();
     search.queue.pop();
-    if (!search.reached.try_emplace(step.node, step.distance * step.towards).second) continue;
+    Search::Reached& reached = search.reached.at(step.node);
+    if (std::exchange(reached.is_settled, true)) continue;
+    reached.place = step.distance * step.towards;
     for (std::int64_t arc = arcs.first(step.node); arc < arcs.first(step.node + 1); ++arc)
-      if (const Index other = arcs.target(arc); !search.reached.contains(other))
-        search.queue.push({step.distance + arcs.length(arc), other, step.towards});
+      search.push({step.distance + arcs.length(arc), arcs.target(arc), step.towards});
   }
-  return search.reached.at(node);
 }
 
 }  // namespace saddleback

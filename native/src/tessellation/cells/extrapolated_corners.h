@@ -1,6 +1,8 @@
 #pragma once
 // Corners of faces that neither a site nor a vertex of its cell sees.
 
+#include <limits>
+#include <memory_resource>
 #include <queue>
 #include <unordered_map>
 
@@ -33,15 +35,22 @@ class ExtrapolatedCorners {
         return distance != other.distance ? distance > other.distance : node > other.node;
       }
     };
+    struct Reached {
+      double distance = std::numeric_limits<double>::infinity();  ///< of the shortest way so far
+      bool is_settled = false;
+      PackedVec2 place = PackedVec2::Zero();  ///< once settled
+    };
     std::priority_queue<Step> queue;
-    std::unordered_map<Index, PackedVec2> reached;
+    std::pmr::unordered_map<Index, Reached> reached;
+    void push(const Step& step);
   };
-  Search begin(Index site) const;
+  Search begin(Index site);
   PackedVec2 along_arcs(Index site, Index node);
   std::optional<PackedVec2> seen_beyond(Index halfedge, const PackedVec2& from, const PackedVec2& to) const;
 
   const CellLogMaps& maps_;
   const JobStage& stage_;
+  std::pmr::monotonic_buffer_resource memory_;  ///< of the searches
   std::unordered_map<std::uint64_t, PackedVec2> corners_;
   std::unordered_map<Index, Search> searches_;  ///< by site
 };
