@@ -226,6 +226,41 @@ def test_each_of_more_parts_than_cells_has_cells_and_a_frame_of_a_lattice(capfd)
     assert "in 230 pieces, since the mesh is in 230 parts: join those first" in capfd.readouterr().out
 
 
+@pytest.mark.parametrize("look", ["REMESH", "QUADS"])
+def test_a_new_mesh_has_the_border_of_an_open_one(look):
+    item = grid(n=2)
+    assert apply(look) == {"FINISHED"}
+    mesh = find_output(item, "dual").data
+    assert sum(polygon.area for polygon in mesh.polygons) == pytest.approx(1.0, abs=1e-6)  # to its very corners
+
+
+def test_borders_that_need_most_cells_are_left():
+    cards = np.arange(300.0)[:, None, None] * [2.0, 0, 0] + [[0.0, 0, 0], [0.1, 0, 0], [0.1, 1, 0], [0, 1, 0]]
+    item = add_object("Cards", cards.reshape(-1, 3), np.arange(1200).reshape(-1, 4))
+    assert apply("REMESH") == {"FINISHED"}
+    assert len(find_output(item, "dual").data.polygons) > 2000
+
+
+@pytest.mark.parametrize("look", ["REMESH", "QUADS"])
+def test_edges_that_need_most_cells_are_left(look):
+    bpy.ops.mesh.primitive_cube_add()
+    item = bpy.context.active_object
+    item.modifiers.new("Bars", "SUBSURF").subdivision_type = "SIMPLE"
+    item.modifiers["Bars"].levels = 2
+    item.modifiers.new("Lattice", "WIREFRAME").thickness = 0.06
+    assert apply(look) == {"FINISHED"}
+
+
+@pytest.mark.parametrize("look", ["PANELS", "STUDS"])
+def test_a_mesh_that_is_inside_out_is_told_and_repair_turns_it(look, capfd):
+    item = sphere()
+    item.data.flip_normals()
+    assert apply(look) == {"FINISHED"}
+    assert "'Sphere' is inside out" in capfd.readouterr().out
+    assert bpy.ops.saddleback.repair() == {"FINISHED"} and apply(look) == {"FINISHED"}
+    assert "inside out" not in capfd.readouterr().out
+
+
 def test_a_look_is_a_mesh_though_faults_stay_where_no_cells_can_be_joined(monkeypatch, capfd):
     item, library = sphere(), native.load()
     own = library.GeodesicVoronoi.dual

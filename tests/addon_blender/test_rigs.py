@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What artists keep beside a mesh: hidden assets, rigs, copies, links, overrides, scenes; read and shown as it is."""
 
+import math
+
 import bpy
 import numpy as np
 import pytest
@@ -492,6 +494,20 @@ def test_modifiers_are_told_apart_from_the_mesh_that_repair_can_mend():
         bpy.ops.saddleback.tessellate(count=3)
     assert bpy.ops.saddleback.repair() == {"FINISHED"} and "nothing to repair" not in jobs.state.line
     assert bpy.ops.saddleback.tessellate(count=3) == {"FINISHED"}
+
+
+def test_a_fault_of_modifiers_is_told_where_the_mesh_itself_has_no_faces():
+    mesh = bpy.data.meshes.new("Twigs")
+    mesh.from_pydata([(0, 0, 0), (0, 0, 1)], [(0, 1)], [])
+    item = bpy.data.objects.new("Twigs", mesh)
+    bpy.context.scene.collection.objects.link(item)
+    activate(item)
+    item.modifiers.new("Sides", "SCREW").angle = math.radians(30)
+    item.modifiers["Sides"].axis, item.modifiers["Sides"].steps = "X", 1
+    item.modifiers.new("Row", "ARRAY").relative_offset_displace = (0.0, 0.0, 0.0)
+    item.modifiers["Row"].use_merge_vertices = True  # the same face twice
+    with pytest.raises(RuntimeError, match="its modifiers make this: apply them"):
+        bpy.ops.saddleback.tessellate(count=3, use_modifiers=True)
 
 
 def test_a_fault_of_the_mesh_itself_is_repaired_below_its_modifiers():

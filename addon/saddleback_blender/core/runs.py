@@ -225,7 +225,8 @@ def _held(request: TessellateRequest) -> tuple[object, ...]:
     settings = request.settings
     if request.sites is not None:
         return ()
-    return (settings.hold_sharp and settings.sharp_angle, settings.hold_boundary, request.marked_edges)
+    may_leave = settings.look != NO_LOOK and (settings.hold_sharp or settings.hold_boundary)
+    return (settings.hold_sharp and settings.sharp_angle, settings.hold_boundary, request.marked_edges, may_leave)
 
 
 def _lines(request: TessellateRequest, mesh: Any, metric: Any) -> list[Any]:

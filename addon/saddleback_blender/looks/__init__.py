@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 NO_LOOK = "NONE"
-# Of new meshes: edges of boxes and machines stay, the many lesser creases of scans do not hold sites.
-SHARP = {"hold_sharp": True, "sharp_angle": math.radians(60.0)}
+# Of new meshes: borders and the edges of boxes and machines stay, the many lesser creases of scans do not hold sites.
+LINES = {"hold_boundary": True, "hold_sharp": True, "sharp_angle": math.radians(60.0)}
 
 
 @dataclass(frozen=True)
@@ -110,12 +110,12 @@ LOOKS: dict[str, Look] = {
     ),
     "REMESH": Look(
         "Remesh", "A new mesh of even triangles with the same layers and materials", "MOD_REMESH", "tessellate",
-        {"count": 2000, "iterations": 60, "make_edges": False, "make_dual": True, **SHARP}, hides_source=True,
+        {"count": 2000, "iterations": 60, "make_edges": False, "make_dual": True, **LINES}, hides_source=True,
     ),
     "QUADS": Look(
         "Quads", "A new mesh of quads: triangles cut into three each, with all vertices on the surface", "MESH_GRID",
         "tessellate",
-        {"count": 700, "iterations": 60, "make_edges": False, "make_dual": True, "dual_faces": "QUADS", **SHARP},
+        {"count": 700, "iterations": 60, "make_edges": False, "make_dual": True, "dual_faces": "QUADS", **LINES},
         beside="REMESH", hides_source=True,
     ),
     "BANDS": Look(

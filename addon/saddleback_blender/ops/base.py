@@ -356,11 +356,13 @@ def _is_made_by_modifiers(context: bpy.types.Context, source: bpy.types.Object) 
     """Tells whether a fault of what is seen is none of the object's own mesh, which Repair could mend."""
     if has_own_faces(context, source):
         return False
-    own = read_surface(source, source.data, check=False)
     try:
+        own = read_surface(source, source.data, check=False)
         native.load().Mesh(own.vertices, own.triangles)
     except native.load().MeshError:
         return False
+    except BadInputError:  # it has no faces, as where a Skin modifier makes them
+        pass
     return True
 
 

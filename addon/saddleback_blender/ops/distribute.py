@@ -45,6 +45,7 @@ from ..core.requests import DirectionFieldRequest, DistributeRequest, GivenDirec
 from ..core.results import CheckResult, DistributeResult
 from ..core.settings import DistributeSettings
 from ..core.shapes.shape_templates import sized
+from ..core.surfaces.inside_out import inside_out_of
 from ..props import keep_settings, settings_of
 from ..props.distribute import DISTRIBUTE
 from ..props.layers import suffix_of
@@ -117,7 +118,7 @@ class ShapesOperator(SurfaceOperator):
 
     def notes(self, result: DistributeResult) -> list[str]:
         """Returns what went wrong."""
-        return list(result.warnings)
+        return [*result.warnings, *inside_out_of(self._surface)]
 
     def figures(self, result: DistributeResult) -> list[str]:
         """Returns how dense it is, and why no more found room."""

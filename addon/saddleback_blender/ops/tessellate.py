@@ -49,6 +49,7 @@ from ..core.requests import CellPaint, Surface, TessellateRequest, content_of
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from ..core.standing import with_anchors
+from ..core.surfaces.inside_out import inside_out_of
 from ..props import existing_group, keep_settings, settings_of
 from ..props.kept_sites import keep_sites, kept_cells
 from ..props.tessellate import TESSELLATE
@@ -191,7 +192,8 @@ class CellsOperator(SurfaceOperator):
         cells = [] if result.mesh is None else cell_faults_of(result.mesh)
         dual = [] if result.dual is None else faults_of(result.dual, self.dual_policy)
         polygons = [] if result.polygons is None else polygon_faults_of(result.polygons, self.dual_policy)
-        return [*cells, *polygons, *dual, *([] if result.shell is None else shell_faults_of(result.shell))]
+        shell = [] if result.shell is None else shell_faults_of(result.shell)
+        return [*cells, *polygons, *dual, *shell, *inside_out_of(self._surface)]
 
     def figures(self, result: CellsResult) -> list[str]:
         """Returns how even the cells are."""
