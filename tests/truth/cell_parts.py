@@ -68,15 +68,15 @@ def check_boundaries(mesh: sb.Mesh, rng: Random) -> None:
             assert on_border or to_branch <= 1e-6 * size, f"boundary {k} ends in the middle of nowhere"
 
 
-def faces_at(mesh: sb.Mesh, point: Floats) -> int:
-    """How many faces there are within a thousandth of an edge."""
-    slack = 1e-3 * longest_edge(mesh)
+def faces_at(mesh: sb.Mesh, point: Floats, share: float = 1e-3) -> int:
+    """How many faces there are within a share of an edge."""
+    slack = share * longest_edge(mesh)
     a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
     square = (normal * normal).sum(axis=1)
     near = abs(((point - a) * normal).sum(axis=1)) <= slack * np.sqrt(square)
     for p, q in ((a, b), (b, c), (c, a)):
-        near &= (np.cross(q - p, point - p) * normal).sum(axis=1) >= -1e-3 * square
+        near &= (np.cross(q - p, point - p) * normal).sum(axis=1) >= -share * square
     return int(near.sum())
 
 

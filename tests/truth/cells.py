@@ -20,10 +20,12 @@ if __name__ == "__main__":  # as a file, too: the project's root holds the packa
 
 import saddleback as sb
 from tests import meshes
+from tests.truth.cell_parts import faces_at
 from tests.truth.graph import shortness
 from tests.truth.registry import guards
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int32]
 Random = np.random.Generator
 
 ROUNDING = 1e-9
@@ -107,6 +109,50 @@ def check_points(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.SurfacePo
     assert (distance <= (1 + accuracy) * least + ROUNDING * scale).all(), "distances too long"
 
 
+def told_by_corners(mesh: sb.Mesh, squares: Floats, points: sb.SurfacePoints) -> Floats:
+    """Squared distances (n, m) at points from those of the vertices (n, V), as of a site that sees a face straight."""
+    sides = mesh.vertices[mesh.triangles[points.faces]]
+    lengths = ((sides - np.roll(sides, -1, axis=1)) ** 2).sum(axis=2)
+    weights = points.barycentric
+    at_corners: Floats = (squares[:, mesh.triangles[points.faces]] * weights).sum(axis=2)
+    return at_corners - (weights * np.roll(weights, -1, axis=1) * lengths).sum(axis=1)
+
+
+def random_places(mesh: sb.Mesh, split: sb.SplitMesh, rng: Random) -> tuple[sb.SurfacePoints, Indices]:
+    """Points within the triangles of a split mesh, small ones as well as large, and their cells."""
+    a, b, c = (split.vertices[split.triangles[:, i]] for i in range(3))
+    sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    some = np.append(rng.choice(len(sizes), 40, p=sizes / sizes.sum()), rng.integers(len(sizes), size=40))
+    weights = rng.dirichlet([1.0, 1.0, 1.0], len(some))
+    places = np.einsum("ni,nij->nj", weights, split.vertices[split.triangles[some]])
+    alone = np.array([faces_at(mesh, place, ROUNDING) == 1 for place in places])  # not on a sheet that lies on another
+    return sb.project(mesh, places[alone]), split.triangle_cell[some[alone]]
+
+
+def exact_squares(mesh: sb.Mesh, sites: sb.SurfacePoints, points: sb.SurfacePoints) -> Floats:
+    """Exact squared distances (n, m) of points, one site after the other."""
+    table = np.array([sb.ExactField(mesh, sites[i : i + 1]).distance_to(points) for i in range(len(sites))])
+    return table**2
+
+
+def excess(mesh: sb.Mesh, sites: sb.SurfacePoints, points: sb.SurfacePoints, cell: Indices, accuracy: float) -> Floats:
+    """By how much points (n,) are farther from their cells' sites than the nearest one and the accuracy let them be.
+
+    In squares: corners of faces may be told too long by the accuracy, and squared distances are told straight between
+    them. Where in truth they are not, nothing is claimed.
+    """
+    exact, corners = exact_squares(mesh, sites, points), exact_table(mesh, sites) ** 2
+    corners[~np.isfinite(corners)] = 0  # on another part
+    told = told_by_corners(mesh, corners, points)
+    room = told_by_corners(mesh, (1 + accuracy) ** 2 * corners, points) - told
+    nearest, at = exact.argmin(axis=0), np.arange(len(cell))
+    slack = ROUNDING * (corners.max() + exact[nearest, at])
+    own_is_straight = told[cell, at] >= exact[cell, at] * (1 - ROUNDING) - slack
+    nearest_is_straight = abs(told - exact)[nearest, at] <= exact[nearest, at] * ROUNDING + slack
+    behind = exact[cell, at] - exact[nearest, at] - room[nearest, at] - slack
+    return np.where(own_is_straight & nearest_is_straight, behind, 0)
+
+
 def any_graph(mesh: sb.Mesh) -> tuple[sb.SaddleVertexGraph, float]:
     """A graph with room for what paths of few arcs add up to beyond its accuracy."""
     return sb.SaddleVertexGraph(mesh, accuracy=5e-3), 1e-2
@@ -130,6 +176,40 @@ def places_in_cells(mesh: sb.Mesh, rng: Random) -> None:
     """`locate` against exact fields, on coarse faces, too."""
     graph, accuracy = any_graph(mesh)
     check_points(mesh, graph, random_sites(mesh, rng, 4), accuracy)
+
+
+@guards(
+    "geodesic_voronoi",
+    "GeodesicVoronoi.cells_at",
+    "GeodesicVoronoi.split",
+    unsettled="corners far outside a cell are told too far, by the way over the cell's own vertices alone",
+)
+def cells_of_places(mesh: sb.Mesh, rng: Random) -> None:
+    """The cell in which a point within a face lies, by `split` and `cells_at`, is its nearest site's by exact fields,
+    where both sites see the face straight.
+    """
+    graph, accuracy = any_graph(mesh)
+    sites = random_sites(mesh, rng, int(rng.choice([6, 40])))
+    cells = sb.geodesic_voronoi(graph, sites)
+    points, cell = random_places(mesh, cells.split(), rng)
+    for of_points in (cell, cells.cells_at(points)):
+        behind = excess(mesh, sites, points, of_points, accuracy)
+        assert (behind <= 0).all(), f"{(behind > 0).sum()} of {len(points)}, by {np.sqrt(behind.max())}"
+
+
+@guards("geodesic_voronoi", "GeodesicVoronoi.split")
+def exact_cells_of_places(mesh: sb.Mesh, rng: Random) -> None:
+    """At no point of an exact cell is another site nearer by more than 1e-5 of a cell's size, by exact fields."""
+    sites = random_sites(mesh, rng, int(rng.choice([6, 40])))
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True)
+    points, cell = random_places(mesh, cells.split(), rng)
+    table = np.sqrt(exact_squares(mesh, sites, points))
+    parts = mesh.components[mesh.triangles[:, 0]]
+    areas = np.bincount(parts, mesh.face_areas) / np.bincount(parts[sites.faces])
+    extent = np.linalg.norm(np.ptp(mesh.vertices, axis=0))  # sites within 1e-10 of it are one
+    behind = table[cell, np.arange(len(cell))] - table.min(axis=0)
+    allowed = 1e-5 * np.sqrt(areas[parts[points.faces]]) + 1e-9 * extent
+    assert (behind <= allowed).all(), f"{(behind > allowed).sum()} of {len(points)}, by {behind.max()}"
 
 
 def rough_torus(rng: Random) -> sb.Mesh:
