@@ -8,7 +8,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "saddleback/mesh/project.h"
 #include "saddleback/mesh/trace.h"
 
 #include "distribution/bent_cell.h"
@@ -62,6 +64,7 @@ void CoverageTest::flag_borders() {
     }
     forbidden_depth_ = edge_distances(*mesh_, allowed, std::numeric_limits<double>::infinity());
     for (double& depth : forbidden_depth_) depth /= k_edge_excess;
+    list_forbidden_faces();
   }
   if (rim.empty()) return;
   const std::vector<double> distances = edge_distances(*mesh_, rim, k_edge_excess * rules_->largest_radius());
@@ -74,6 +77,18 @@ void CoverageTest::flag_borders() {
     if (mesh_->length(3 * f) > reach || mesh_->length(3 * f + 1) > reach || mesh_->length(3 * f + 2) > reach)
       near_border_[f] = 1;
   }
+}
+
+void CoverageTest::list_forbidden_faces() {
+  if (mesh_->is_intrinsic()) return;
+  std::vector<Box<Vec3>> boxes;
+  for (Index f = 0; f < mesh_->face_count(); ++f) {
+    if (!options_->forbidden[f]) continue;
+    const auto [a, b, c] = mesh_->corners(3 * f);
+    boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
+    forbidden_faces_.push_back(f);
+  }
+  forbidden_boxes_ = BoxTree<Vec3>(boxes);
 }
 
 /// Bounds from below how far a point of a forbidden face is from all that is allowed: as deep as the face, or as far as
@@ -115,6 +130,60 @@ bool CoverageTest::is_beyond_border(const CellView& view, const Copy& copy, cons
         if (is_beyond_border(view, copy, motion, point)) return true;
         if (share == 0) return false;
       }
+  }
+  return false;
+}
+
+/// Tells whether all copies certainly hold a place of a forbidden face: such faces may be smaller than the copies and
+/// lie between the points of them that is_beyond_border looks at. Looks for the places nearest to the middles of the
+/// copy's largest disks.
+bool CoverageTest::is_on_forbidden(const CellView& view, const Copy& copy, const Motion& motion) const {
+  if (forbidden_faces_.empty()) return false;
+  const double scale = copy.placement.scale, right = 0.5 * std::numbers::pi;
+  const Vec3 center = position(*mesh_, view.center);
+  const Vec3 x = direction_in_space(*mesh_, view.center.face, copy.placement.angle);
+  const Vec3 y = direction_in_space(*mesh_, view.center.face, copy.placement.angle + right);
+  for (const Disk& disk : copy.body->disks) {
+    const double room = scale * disk.radius - motion.of(disk.center);
+    if (room <= 0) continue;
+    const Vec3 about = center + scale * (disk.center.x() * x + disk.center.y() * y);
+    const Vec3 half = Vec3::Constant(room);
+    SurfacePoint nearest{k_none, Vec3::Zero()};
+    double least = room * room;
+    forbidden_boxes_.visit({about - half, about + half}, [&](Index number) {
+      const SurfacePoint place = nearest_on_face(*mesh_, forbidden_faces_[number], about);
+      const double square = (position(*mesh_, place) - about).squaredNorm();
+      if (square < least) least = square, nearest = place;
+    });
+    if (nearest.face == k_none) continue;
+    constexpr double k_inward = 0.1;  // off the rim, where tracings may end on either side
+    nearest.barycentric = (1 - k_inward) * nearest.barycentric + Vec3::Constant(k_inward / 3);
+    if (is_certainly_on(nearest, view, copy, motion, x, y)) return true;
+  }
+  return false;
+}
+
+/// Finds the point of the copy at the cell's center that lies on a place, and whether it is deeper in the copy than
+/// that moves. x, y: the copy's axes in space.
+bool CoverageTest::is_certainly_on(const SurfacePoint& place, const CellView& view, const Copy& copy,
+                                   const Motion& motion, const Vec3& x, const Vec3& y) const {
+  constexpr int k_steps = 3;
+  const double scale = copy.placement.scale, rounded = k_rounding * copy.radius();
+  const Vec3 wanted = position(*mesh_, place);
+  Vec3 off = wanted - position(*mesh_, view.center);
+  Vec2 point = Vec2::Zero();
+  for (int step = 0; step < k_steps; ++step) {
+    point += Vec2(x.dot(off), y.dot(off)) / scale;
+    const double length = point.norm() * scale;
+    if (!(length <= copy.radius())) return false;
+    const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
+    const std::optional<TraceEnd> end =
+        trace_end_within(*mesh_, view.center, angle_about(*mesh_, view.center, angle), length, k_most_traced);
+    if (!end || end->hit_boundary) return false;
+    off = wanted - position(*mesh_, end->point);
+    if (end->point.face != place.face) continue;
+    const double depth = -scale * copy.body->distance.exact(point);
+    if (depth - motion.of(point) - k_most_stretch * off.norm() > rounded) return true;
   }
   return false;
 }
@@ -228,7 +297,8 @@ bool CoverageTest::is_covered(const CellView& view, const Copy& copy, const Moti
       if (found.depth > drift * found.point.norm()) return true;
       if (found.depth > -slack && is_certain(view, copy, motion, found, pose, neighbor.copy)) return true;
     }
-  return !near_border_.empty() && near_border_[view.center.face] && is_beyond_border(view, copy, motion);
+  if (near_border_.empty() || !near_border_[view.center.face]) return false;
+  return is_on_forbidden(view, copy, motion) || is_beyond_border(view, copy, motion);
 }
 
 CoverageTest::Cover CoverageTest::cover(const Cell& cell, const CellView& view, Index kind, const Copy& copy,

@@ -6,6 +6,7 @@
 #include "saddleback/distribution/distribution.h"
 
 #include "distribution/placing_rules.h"
+#include "support/box_tree.h"
 
 namespace saddleback::distribution {
 
@@ -42,6 +43,7 @@ class CoverageTest {
 
  private:
   void flag_borders();
+  void list_forbidden_faces();
   /// How copies bend counts where a proof is wanted; to look for room they are near enough to straight ones.
   bool proves_bent() const { return options_->maximal && options_->bend; }
   Cover straight_cover(const CellView& view, const Copy& copy, const Neighbors& near) const;
@@ -53,6 +55,9 @@ class CoverageTest {
   double depth_at(const SurfacePoint& point) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion, const Vec2& point) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
+  bool is_on_forbidden(const CellView& view, const Copy& copy, const Motion& motion) const;
+  bool is_certainly_on(const SurfacePoint& place, const CellView& view, const Copy& copy, const Motion& motion,
+                       const Vec3& x, const Vec3& y) const;
 
   const Mesh* mesh_;
   const PlacingRules* rules_;
@@ -60,6 +65,8 @@ class CoverageTest {
   const DistributionOptions* options_;
   std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
   std::vector<double> forbidden_depth_;    ///< per vertex: at least so far within what is forbidden
+  std::vector<Index> forbidden_faces_;
+  BoxTree<Vec3> forbidden_boxes_{{}};  ///< of these faces; empty where lengths are not those of the positions
 };
 
 }  // namespace saddleback::distribution
