@@ -42,6 +42,10 @@ def test_random_input_meets_the_truths():
         ("shapes.innocent_shapes", 123100773),  # an edge 1e-5 long, seen along
         ("graph.path_lengths", 20460663),  # wandered through a region of 1e-9 of its distance, all of it on a ray
         ("cells.places_in_cells", 66001587),  # a site seen straight that claims nothing of the face
+        ("cells.cells_of_places", 1000000000284),  # corners far outside a cell, reached over its own vertices only
+        ("cells.cells_of_places", 1000000000603),
+        ("cells.cells_of_places", 1000000000718),
+        ("cells.cells_of_places", 1000000000741),  # in line along the border, on a flat grid
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
         ("cell_parts.polygons_beside_barriers", 20406904),  # a corner on the point of a barrier that was tried

@@ -2565,8 +2565,8 @@ def geodesic_voronoi(
 ) -> GeodesicVoronoi:
     """Assign every point of the surface to its nearest site.
 
-    Bisectors are straight inside a face, exactly right where the geodesics to both sites cross no saddle vertex. Cells
-    smaller than a face, and several sites in one face, are found.
+    Bisectors are straight inside a face, right where both sites see it straight, past no saddle vertex and by one way.
+    Cells smaller than a face, and several sites in one face, are found.
 
     Parameters
     ----------

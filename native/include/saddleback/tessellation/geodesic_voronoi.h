@@ -85,8 +85,8 @@ struct GeodesicVoronoi {
   std::vector<Index> corners(Index cell) const;
 };
 
-/// Assigns every point of the surface to its nearest site. Bisectors are straight inside a face, exactly right where
-/// the geodesics to both sites cross no saddle vertex; cells smaller than a face and several sites in one face are
+/// Assigns every point of the surface to its nearest site. Bisectors are straight inside a face, right where both sites
+/// see it straight, past no saddle vertex and by one way; cells smaller than a face and several sites in one face are
 /// found. \throw InputError for no sites, a site off the mesh, a component without a site; DeviceError; Cancelled.
 /// O(sites k log k + arcs + pieces). After [liu2011], with candidates spread over edges instead of vertex labels alone.
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,

@@ -24,6 +24,12 @@ void check_components(const Mesh& mesh, const SurfacePoints& sites) {
                            "; put at least one site on every part"));
 }
 
+std::vector<VerticesBeside> one_for_each_thread(CellLogMaps& maps, int threads) {
+  std::vector<VerticesBeside> beside;
+  for (int i = 0; i < thread_count(threads); ++i) beside.emplace_back(maps);
+  return beside;
+}
+
 }  // namespace
 
 void check_sites(const Mesh& mesh, const SurfacePoints& sites) {
@@ -36,7 +42,7 @@ CellCandidates::CellCandidates(const SaddleVertexGraph& graph, const VertexRings
                                int threads, int cuda_device)
     : threads_(threads),
       maps_(graph, rings, lengths, cuda_device),
-      beside_(thread_count(threads), VerticesBeside(maps_)),
+      beside_(one_for_each_thread(maps_, threads)),
       rows_(rings),
       spread_(maps_, beside_, threads),
       before_{CandidateRows(rings), {}} {}

@@ -11,12 +11,14 @@ VerticesBeside::VerticesBeside(CellLogMaps& maps)
       labels_(maps.labels()),
       arcs_(maps.graph().arcs()),
       placer_(maps),
+      ways_(maps),
       beside_(k_beside),
       table_(maps.graph().mesh().vertex_count()) {}
 
 void VerticesBeside::forget() {
   site_ = k_none;
   ++age_;
+  ways_.forget();
 }
 
 void VerticesBeside::place_cell(Index site) {
@@ -99,13 +101,19 @@ bool VerticesBeside::has_shorter_way(Index node, Index site, double straight) co
 }
 
 /// Places a node next to vertices of the site's own cell, if it has any. A node across or beside an edge of theirs has
-/// an arc to one of them: edges of the mesh are arcs.
+/// an arc to one of them: edges of the mesh are arcs. Corners of long faces may lie far outside the cell, and the ways
+/// over its vertices lead there the long way round: longer than the place is away, other ways are looked for.
 bool VerticesBeside::place_by_cell(Index node, Index site, VertexPlace& place) {
+  constexpr double k_far = 1.5;     // as far as the node is from its own site
+  constexpr double k_detour = 1.1;  // as long as the way would be, did it lead straight to the place
   if (labels_.nodes(site).empty()) return false;
   const bool is_seen = place_across_own(node, site, place) || place_across(node, site, true, place);
   const double straight = is_seen ? place.distance : std::numeric_limits<double>::infinity();
   if (!place_by_arc(node, site, is_seen, place)) return false;
   place.distance = std::min(place.distance, straight);
+  if (!maps_.is_smooth() && place.distance > k_far * labels_.distance(node) &&
+      place.distance > k_detour * (maps_.anchor_distance(place) + place.at.norm()))
+    place.distance = std::min(place.distance, ways_.find(site, node).norm());
   return true;
 }
 

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "tessellation/log_map/cell_placer.h"
+#include "tessellation/log_map/ways_of_sites.h"
 
 namespace saddleback {
 
 /// A thread's own, for vertices next to cells that are placed; the ways are listed with CellLogMaps.
 ///
 /// A vertex next to another site's cell is placed from vertices of that cell alone: the last bit of the path leaves the
-/// cell, all before lies inside (cells are star-shaped).
+/// cell, all before lies inside (cells are star-shaped). That holds at the cell's border, not for corners far outside.
 class VerticesBeside {
  public:
   /// The maps must outlive it.
@@ -62,6 +63,7 @@ class VerticesBeside {
   const SiteLabels& labels_;
   const ArcRows& arcs_;
   CellPlacer placer_;
+  WaysOfSites ways_;
   std::vector<Beside> beside_;
   std::uint32_t age_ = 0;    ///< answers of earlier ones are forgotten
   Index site_ = k_none;      ///< placed last
