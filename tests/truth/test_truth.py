@@ -68,8 +68,14 @@ def test_random_input_meets_the_truths():
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
         ("plane.lifted_cells", 12073),  # sides of twins in line to rounding, met as if none were between them
         ("plane.lifted_cells", 28583),
+        ("disks.lifted_disks", 1000000049687),  # a triangle that reaches far beyond a narrow cell it has its middle in
         ("disks.lifted_disks", 41134446),  # both sides of a cell in one line: what lies beside became the cell's
         ("relaxation.values_between_places", 5612356),  # two places 1e-5 apart pulled a third
+        (
+            "ways.maps_hold_what_lies_beside",
+            1000000010338,
+        ),  # triangles nearly as large as a band that is wide and short
+        ("ways.maps_of_narrow_bands", 1000000032335),
         ("ways.maps_hold_what_lies_beside", 20270245),  # an edge cut at the radius saw past an end of the curve
         ("ways.maps_hold_what_lies_beside", 20275565),
         ("ways.maps_of_narrow_bands", 6),  # slivers of a curve's parts, all halved to the end: no end

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <utility>
 
 #include "charts/edge_pieces.h"
 #include "mesh/cutting/constrained_triangulation.h"
@@ -156,31 +158,33 @@ class FaceCut {
     }
   }
 
-  /// Returns the site that the pieces say; the nearest of them in cells narrower than the tolerance, where these
-  /// differ.
+  /// Returns the site that the pieces say. Where these differ, in cells narrower than the tolerance, it is the one that
+  /// no corner or middle of the triangles is much farther from than from the nearest: the narrow cell may be nearest in
+  /// the middle of a triangle that reaches far beyond it.
   Index choose() const {
     if (sites_.empty()) return k_none;
     if (std::all_of(sites_.begin(), sites_.end(), [&](Index site) { return site == sites_[0]; })) return sites_[0];
-    const Vec2 place = middle_of_largest();
-    return *std::min_element(sites_.begin(), sites_.end(), [&](Index a, Index b) {
-      return std::pair(distance(place, a), a) < std::pair(distance(place, b), b);
-    });
+    std::pair<double, Index> best{std::numeric_limits<double>::infinity(), k_none};
+    for (const Index site : sites_) best = std::min(best, {largest_lag(site), site});
+    return best.second;
+  }
+
+  double largest_lag(Index site) const {
+    double largest = 0;
+    for (const Index t : part_) {
+      const Triangle points = flat_.triangle(t);
+      const Vec2 &a = corners_[points[0]].place, &b = corners_[points[1]].place, &c = corners_[points[2]].place;
+      for (const Vec2& place : {a, b, c, Vec2((a + b + c) / 3)}) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Index other : sites_) nearest = std::min(nearest, distance(place, other));
+        largest = std::max(largest, distance(place, site) - nearest);
+      }
+    }
+    return largest;
   }
 
   double distance(const Vec2& place, Index site) const {
     return (place - diagram_.sites[site]).norm() - diagram_.weights[site];
-  }
-
-  Vec2 middle_of_largest() const {
-    double largest = -1;
-    Vec2 middle(0, 0);
-    for (const Index t : part_) {
-      const Triangle points = flat_.triangle(t);
-      const Vec2 &a = corners_[points[0]].place, &b = corners_[points[1]].place, &c = corners_[points[2]].place;
-      const double area = std::abs(cross(b - a, c - a));
-      if (area > largest) largest = area, middle = (a + b + c) / 3;
-    }
-    return middle;
   }
 
   FacePiece triangle(std::size_t t) const {

@@ -26,7 +26,8 @@ using charts::PartedSheet;
 using charts::Sheet;
 using charts::SweptSide;
 
-// Edges as a share of the radius: so fine that a circle about a bend is round enough.
+// Edges as a share of the radius, or of the length of shorter curves, but for a quarter of the radius: so fine that
+// a circle about a bend is round enough.
 constexpr double k_size = 1.0 / 3;
 // As harmonic_map has it.
 constexpr double k_least_weight = 1e-3;
@@ -294,7 +295,7 @@ StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius,
                              " triangles, of ", k_most_triangles, " at most; the least radius that works is ",
                              curve.length() / most * (1 + k_printed)));
   const JobStage stage(job, "Mapping along the curve");
-  const double size = k_size * radius, reach = radius + size;
+  const double size = k_size * std::clamp(curve.length(), 0.25 * radius, radius), reach = radius + size;
   const charts::NearPart near = charts::near_part(mesh, curve, radius, stage.part(0, 0.1));
   const SurfaceCurve line = curve_on(near, curve);
   Sheet sheet = charts::cut_sheet(near.mesh, line, radius, size, stage.part(0.1, 0.3));
