@@ -35,7 +35,7 @@ def main() -> int:
 
 
 def leave(code: int) -> NoReturn:
-    """Ends the program. The module of Blender 4.2 frees panels after Python has ended, anybody's: it crashes there."""
+    """Ends the program. The module of Blender 4.2 crashes after Python has ended, once any property has a callback."""
     import bpy
 
     sys.stdout.flush()

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import atexit
+
 bl_info = {
     "name": "Saddleback",
     "author": "The Saddleback maintainers",
@@ -17,15 +19,21 @@ bl_info = {
 
 def register() -> None:
     """Makes everything of this module known to Blender."""
+    import bpy
+
     from . import jobs, ops, prefs, props, translations, ui
 
     for module in (translations, props, prefs, jobs, ops, ui):
         module.register()
+    # Blender as a Python module frees the classes of add-ons after Python has ended: 4.5 hangs there, and 4.2 crashes.
+    if getattr(bpy.app, "module", False):
+        atexit.register(unregister)
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
     from . import jobs, ops, prefs, props, translations, ui
 
+    atexit.unregister(unregister)
     for module in (ui, ops, jobs, prefs, props, translations):
         module.unregister()

@@ -89,16 +89,27 @@ QUIT = """
     print("quits at", time.monotonic(), flush=True)
 """
 
+SCRIPT = """
+    import sys, time
+    sys.path += {folders}
+    import bpy
+    import saddleback_blender
+    saddleback_blender.register()
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3)
+    assert bpy.ops.saddleback.tessellate(count=10, iterations=1) == {{"FINISHED"}}
+    print("quits at", time.monotonic(), flush=True)
+"""
+
 
 @pytest.mark.skipif(
-    bpy.app.version < (4, 3) and not bpy.app.binary_path, reason="that module crashes at its end with anybody's panel"
+    bpy.app.version < (4, 3) and not bpy.app.binary_path, reason="its module crashes at the end with any callback"
 )
-@pytest.mark.parametrize("moment", [0.05, 1.0])
-def test_quitting_during_a_run_is_clean_and_quick(tmp_path, moment):
+@pytest.mark.parametrize("text", [QUIT.replace("{moment}", "0.05"), QUIT.replace("{moment}", "1.0"), SCRIPT])
+def test_quitting_is_clean_and_quick(tmp_path, text):
     script = tmp_path / "quit.py"
     packages = [Path(module.__file__).parents[1] for module in (native.load(), pytest)]
     folders = [str(folder) for folder in (Path(__file__).parent, REPOSITORY / "addon", *packages)]
-    script.write_text(textwrap.dedent(QUIT.format(folders=folders, moment=moment)))
+    script.write_text(textwrap.dedent(text.format(folders=folders)))
     binary = bpy.app.binary_path
     command = [binary, "-b", "--factory-startup", "--python-exit-code", "9", "--python"] if binary else [sys.executable]
     done = subprocess.run(
