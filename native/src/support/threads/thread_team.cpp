@@ -31,9 +31,10 @@
 namespace saddleback {
 namespace {
 
-/// Looks that a thread takes before it sleeps, some tenths of a millisecond: loops follow each other closely, and to
-/// wake a thread takes long. Much longer would take the cores from other programs.
-constexpr int k_looks = 10000;
+/// Looks that a thread takes before it sleeps, about a tenth of a millisecond: loops follow each other closely, and to
+/// wake a thread takes long. After the first few it offers its core before each: where other programs are at work, the
+/// one it waits for may need that very core.
+constexpr int k_looks = 200, k_offers = 300;
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -58,9 +59,12 @@ void wake(std::atomic<std::uint32_t>& counter) { counter.notify_one(); }
 
 /// Waits until `counter` is no longer `seen`, and returns what it is then.
 std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& counter, std::uint32_t seen) {
-  for (int i = 0; i < k_looks; ++i) {
+  for (int i = 0; i < k_looks + k_offers; ++i) {
     if (const std::uint32_t now = counter.load(std::memory_order_acquire); now != seen) return now;
-    pause();
+    if (i < k_looks)
+      pause();
+    else
+      std::this_thread::yield();
   }
   for (;;) {
     sleep_while(counter, seen);
@@ -71,6 +75,7 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& counter, std::ui
 /// A thread that waits to be asked. It is never destroyed: its thread may wait until the program's very end.
 struct alignas(k_apart) Worker {
   std::atomic<std::uint32_t> asked{1};  // first to be there
+  std::atomic<std::uint32_t> taken{1};  // the last request that it began with, or that was withdrawn before
   TeamWork work{};
   int member = 0;
   alignas(k_apart) std::atomic<std::uint32_t> answered{0};
@@ -80,7 +85,8 @@ struct alignas(k_apart) Worker {
     for (std::uint32_t seen = 1;;) {
       answered.store(seen, std::memory_order_release);
       wake(answered);
-      seen = wait_for_change(asked, seen);
+      do seen = wait_for_change(asked, seen);
+      while (!take(seen));
       work.function(work.context, member);
     }
   }
@@ -92,8 +98,16 @@ struct alignas(k_apart) Worker {
     wake(asked);
   }
 
-  void wait_until_done() const {
+  /// Takes a request, for the worker to begin with or for the asker to withdraw: whoever is first.
+  bool take(std::uint32_t request) {
+    std::uint32_t before = request - 1;
+    return taken.compare_exchange_strong(before, request, std::memory_order_acq_rel);
+  }
+
+  /// Withdraws the request where it has not begun, as while other programs have its core; else waits for its end.
+  void wait_until_done() {
     const std::uint32_t last = asked.load(std::memory_order_relaxed);
+    if (take(last)) return;
     for (std::uint32_t now = answered.load(std::memory_order_acquire); now != last;)
       now = wait_for_change(answered, now);
   }
@@ -225,7 +239,7 @@ void run_team(int members, TeamWork work) {
   idle.borrow(members - 1, workers);
   for (std::size_t i = 0; i < workers.size(); ++i) workers[i]->ask(work, static_cast<int>(i) + 1);
   work.function(work.context, 0);
-  for (const Worker* worker : workers) worker->wait_until_done();
+  for (Worker* const worker : workers) worker->wait_until_done();
   idle.give_back(workers);
 }
 

@@ -13,8 +13,9 @@ struct TeamWork {
 };
 
 /// Calls work for the members 0 to `members` - 1, member 0 in the calling thread, the others each in a thread of its
-/// own, and returns when all are done. Where the system gives no more threads (a limit of memory, or of processes)
-/// some members are left out: the work must be done whole by those that remain. The work must not throw.
+/// own, and returns when all are done. Where the system gives no more threads (a limit of memory, or of processes), or
+/// other programs hold a thread up until the rest is done, some members are left out: the work must be done whole by
+/// those that remain. The work must not throw.
 ///
 /// Any number of threads may call at the same time, also from within a member. The threads stay for later calls; a
 /// forked child begins with none, and the end of the program does not wait for them.
