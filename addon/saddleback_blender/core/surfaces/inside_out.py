@@ -24,16 +24,19 @@ def inside_out_of(surface: Surface) -> list[str]:
 def inside_out_parts(surface: Surface) -> tuple[int, int]:
     """The number of closed parts that face inward but for walls of hollows, and that of all parts."""
     part = np.asarray(native.load().connected_parts(surface.triangles, len(surface.vertices)))
-    corners = (surface.vertices - surface.vertices.mean(axis=0))[surface.triangles]
-    volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
-    volume = np.bincount(part, volumes)
+    vertices = surface.vertices - surface.vertices.mean(axis=0)
+    first, second, third = (vertices[corner] for corner in surface.triangles.T)
+    volume = np.bincount(part, np.einsum("ij,ij->i", first, np.cross(second, third)) / 6.0)
     is_closed = np.ones(len(volume), bool)
-    is_closed[part[native.load().border_edges(surface.triangles, len(surface.vertices))[1]]] = False
+    is_closed[part[native.load().border_edges(surface.triangles, len(vertices))[1]]] = False
+    inward = is_closed & (volume < 0.0)
+    if not inward.any():
+        return 0, len(volume)
     least, most = np.full((len(volume), 3), np.inf), np.full((len(volume), 3), -np.inf)
-    np.minimum.at(least, part, corners.min(axis=1))
-    np.maximum.at(most, part, corners.max(axis=1))
-    # A flat part has no inside; its volume is rounding.
-    inward = is_closed & (volume < -1e-6 * np.prod(most - least, axis=1))
+    for corner in (first, second, third):
+        np.minimum.at(least, part, corner)
+        np.maximum.at(most, part, corner)
+    inward &= volume < -1e-6 * np.prod(most - least, axis=1)  # a flat part has no inside; its volume is rounding
     outer = np.nonzero(is_closed & (volume > 0.0))[0]
     count = 0
     for i in np.nonzero(inward)[0]:
