@@ -1,6 +1,7 @@
 #include "voronoi2d/diagram/cell_block.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -52,6 +53,10 @@ namespace {
 // From a half-edge to the next and to the previous one of its triangle, by its place there.
 constexpr std::ptrdiff_t k_next[4] = {1, 1, -2, 0}, k_previous[4] = {2, -1, -1, 0};
 
+/// The twin of a half-edge that ends at the cell's site. At the border another thread may be giving it a number that is
+/// negative as well, see Numberer::write_sides.
+Index twin_of(const Index& there) { return std::atomic_ref(const_cast<Index&>(there)).load(std::memory_order_relaxed); }
+
 }  // namespace
 
 // Always as many steps, since when a walk ends cannot be predicted: what comes after is the same once more. Each step
@@ -84,7 +89,7 @@ bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Inde
       least[i] = std::min(least[i], k_few * other + step);
       flags[i] |= twins[walk[i] | 3];
       count[i] += is_under_way[i];
-      const Index twin = twins[walk[i] + k_previous[k]];
+      const Index twin = twin_of(twins[walk[i] + k_previous[k]]);
       ends |= twin;
       walk[i] = std::max(twin, 0);
       is_under_way[i] &= static_cast<std::ptrdiff_t>(twin != leaving[i]);
@@ -143,7 +148,7 @@ bool CellBlock::gather_any(const Triangulation& mesh, Index first, const JobStag
       add(half, neighbor);
       if (neighbor < any_neighbor_[any_lowest_]) any_lowest_ = static_cast<Index>(any_half_.size()) - 1;
     }
-    half = mesh.twins[last];
+    half = twin_of(mesh.twins[last]);
     if (half < 0) {
       add(last, mesh.corners[last]);
       any_lowest_ = 0;

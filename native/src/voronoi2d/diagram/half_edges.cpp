@@ -332,6 +332,7 @@ class Numberer {
       if (!may_be_deferred)
         return CellBlock::for_sides(begin, end, stage_, [&](Index i) { to[i] = numbers[half[i] | 3]; });
       CellBlock::for_sides(begin, end, stage_, [&](Index i) {
+        if (cells.next_neighbors[i] == k_none) return;  // at infinity: see below
         const bool is_deferred = lowest_about(i, scratch) < known;
         to[i] = is_deferred ? deferred(half[i] | 3) : numbers[half[i] | 3];
         if (is_deferred) piece.deferred_corners.push_back(corner + i);
@@ -340,10 +341,9 @@ class Numberer {
     for (const Index cell : cells.open) to[cells.starts[cell + 1] - 1] = k_none;
   }
 
-  /// The lowest site about a corner.
+  /// The lowest site about a corner that is not at infinity.
   Index lowest_about(Index corner, Scratch& scratch) const {
     const CellBlock& cells = scratch.cells;
-    if (cells.next_neighbors[corner] == k_none) return cells.sites[corner];  // at infinity there is only this one
     if (is_large(cells.halves[corner])) return go_around(cells.halves[corner], scratch);
     return std::min({cells.sites[corner], cells.neighbors[corner], cells.next_neighbors[corner]});
   }
@@ -356,7 +356,8 @@ class Numberer {
     Index *const sides = result_.side_edges.data() + at.corners, *const twins = mesh_.twins.data();
     CellBlock::for_sides(0, scratch.own_side_count, stage_, [&](Index k) {
       const Index side = half[scratch.own_sides[k]], twin = twins[side];
-      twins[twin < 0 ? side : twin] = ~(at.edges + k);
+      // At the border the cell on the other side may be gathered meanwhile, which only looks whether it is negative.
+      std::atomic_ref(twins[twin < 0 ? side : twin]).store(~(at.edges + k), std::memory_order_relaxed);
     });
     for_runs(cells, known, [&](Index begin, Index end, bool may_be_deferred) {
       if (!may_be_deferred)
