@@ -92,22 +92,40 @@ Mesh::Mesh(std::span<const double> coordinates, std::span<const Index> triangles
       is_intrinsic_(metric.dimension > 3 || metric.lengths) {
   stage.check();
   check_faces(coordinates, metric.dimension, triangles_);
+  stage.check();
   if (!is_intrinsic_) check_areas(positions_, triangles_);
   stage.update(0.15);
   {
     const EdgeTable edges = build_edge_table(triangles_, vertex_count());
+    stage.check();
     check_edges(triangles_, edges);
     stage.update(0.4);
     edge_count_ = edges.edge_count();
     twins_ = twins_of(edges);
   }
+  stage.check();
   order_vertices();
   if (is_intrinsic_) take_lengths(coordinates, metric);
   stage.update(0.5);
+  lengths_.resize(halfedge_count());
+  corner_angles_.resize(halfedge_count());
+  face_areas_.resize(face_count());
+  constexpr Index k_chunk = 4096;  // faces a thread takes at once
+  parallel_for(face_count(), 0, k_chunk, [&](Index f, int) {
+    if (f % k_chunk == 0) stage.check();
+    const Triangle& t = triangles_[f];
+    const FaceShape shape = is_intrinsic_ ? measure_face(std::span<const double, 3>(&lengths_[3 * f], 3))
+                                          : measure_face(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    face_areas_[f] = shape.area;
+    std::copy(shape.length.begin(), shape.length.end(), lengths_.begin() + 3 * f);
+    std::copy(shape.angle.begin(), shape.angle.end(), corner_angles_.begin() + 3 * f);
+  });
+  stage.check();
   measure();
   if (is_intrinsic_) measure_bird();
   stage.update(0.8);
   find_components();
+  stage.check();
   find_boundary_loops();
   const Index euler = vertex_count() - edge_count_ + face_count();
   genus_ = component_count_ - (euler + static_cast<Index>(boundary_loops_.size())) / 2;
@@ -196,18 +214,6 @@ void Mesh::measure_bird() {
 }
 
 void Mesh::measure() {
-  constexpr Index k_chunk = 4096;  // faces a thread takes at once
-  lengths_.resize(halfedge_count());
-  corner_angles_.resize(halfedge_count());
-  face_areas_.resize(face_count());
-  parallel_for(face_count(), 0, k_chunk, [&](Index f, int) {
-    const Triangle& t = triangles_[f];
-    const FaceShape shape = is_intrinsic_ ? measure_face(std::span<const double, 3>(&lengths_[3 * f], 3))
-                                          : measure_face(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
-    face_areas_[f] = shape.area;
-    std::copy(shape.length.begin(), shape.length.end(), lengths_.begin() + 3 * f);
-    std::copy(shape.angle.begin(), shape.angle.end(), corner_angles_.begin() + 3 * f);
-  });
   // Sums go in the order of the faces, whatever the number of threads.
   total_angles_.assign(vertex_count(), 0.0);
   double length_sum = 0;
