@@ -27,7 +27,8 @@ inline constexpr double k_least_gap = 1e-9;
 
 /// Lower envelope of the lines, in order along the edge, exactly. Ties go to the smaller site, as though every line lay
 /// higher than those of smaller sites by far less than any difference; lines that are nowhere least change nothing, so
-/// that two faces that share an edge agree to the bit. O(m^2) for m lines, m being 2 or 3 nearly always.
-void lower_envelope(const std::vector<EdgeLine>& lines, std::vector<EdgePiece>& pieces);
+/// that two faces that share an edge agree to the bit. Many lines are sorted, and those dropped. O(m log m) for m
+/// lines, or O(k m) where some are equal and k are somewhere least; m is 2 or 3 nearly always.
+void lower_envelope(std::vector<EdgeLine>& lines, std::vector<EdgePiece>& pieces);
 
 }  // namespace saddleback
