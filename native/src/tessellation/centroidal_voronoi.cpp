@@ -90,7 +90,8 @@ void show_cells(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& 
 CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
                                   const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr int k_first_iterations = 10, k_most_rounds = 5;
-  constexpr double k_start = 0.05;  // of the first round, told as a part of it
+  constexpr double k_start = 0.05;   // of the first round, told as a part of it
+  constexpr double k_relaxed = 0.7;  // of a round, before sites are exchanged
   const Mesh& mesh = graph.mesh();
   const HeldSites checked(mesh, options.constraints.curves, {}, 0);
   HeldStart start = held_start(mesh, count, options.constraints.curves, options.density, seed, stage.part(0, k_start));
@@ -102,16 +103,32 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
     on_curves.stop.max_iterations =
         round == 0 ? std::min(options.stop.max_iterations, k_first_iterations) : options.stop.max_iterations;
     on_curves.constraints.held = start.held;
-    on_curves.closed_ball = options.closed_ball && on_curves.stop.max_iterations == options.stop.max_iterations;
-    const JobStage part = stage.part(1 - std::pow(0.5, round), 1 - std::pow(0.5, round + 1));
+    on_curves.closed_ball = false;
+    const JobStage whole = stage.part(1 - std::pow(0.5, round), 1 - std::pow(0.5, round + 1));
+    const JobStage part = whole.part(0, k_relaxed);
     CentroidalVoronoi result = relax_sites(graph, start.sites, on_curves, part);
     show_cells(graph, on_curves, part, result);
-    if (result.stop_reason == k_cancelled || options.stop.max_iterations == 0 || round == k_most_rounds) return result;
-    start.sites = result.sites;
-    const bool changed =
-        hold_stray_sites(mesh, result.cells, options.constraints.curves, fixed, start.sites, start.held);
-    if (!changed && on_curves.stop.max_iterations == options.stop.max_iterations) return result;
+    const auto has_strays = [&] {
+      start.sites = result.sites;
+      return hold_stray_sites(mesh, result.cells, options.constraints.curves, fixed, start.sites, start.held);
+    };
+    if (result.stop_reason == k_cancelled || options.stop.max_iterations == 0) return result;
+    const bool is_last = round == k_most_rounds,
+               is_whole = on_curves.stop.max_iterations == options.stop.max_iterations;
     on_curves.start.annealing = 0;
+    if (!is_last && (has_strays() || !is_whole)) continue;
+    if (!options.closed_ball || find_dual_issues(mesh, result.cells, part).empty()) return result;
+    on_curves.closed_ball = true;  // once nothing else is to change, which takes as long as all before
+    const JobStage last = whole.part(k_relaxed, 1);
+    CentroidalVoronoi closed = relax_sites(graph, result.sites, on_curves, last, true);
+    if (closed.exchanged == 0) {
+      result.issues = std::move(closed.issues);
+      if (closed.stop_reason == k_cancelled) result.stop_reason = k_cancelled;
+      return result;
+    }
+    result = std::move(closed);
+    show_cells(graph, on_curves, last, result);
+    if (is_last || result.stop_reason == k_cancelled || !has_strays()) return result;
   }
 }
 
@@ -229,7 +246,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
+                              const CentroidalVoronoiOptions& options, const JobStage& stage, bool is_relaxed) {
   constexpr double k_first = 0.5;  // of the steps, where sites may be exchanged after them
   const double part = 1.0 / (options.start.annealing + options.stop.max_iterations + 1),
                shaken = (options.start.annealing + 1) * part,
@@ -244,7 +261,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   try {
     shake(relaxation, options, stage.part(part, shaken));
     begin();
-    relax(relaxation, options, stage.part(shaken, relaxed), log);
+    if (!is_relaxed) relax(relaxation, options, stage.part(shaken, relaxed), log);
     if (options.closed_ball) close_balls(relaxation, options, stage.part(relaxed, 1), log, exchange);
   } catch (const Cancelled&) {
     if (!options.stop.return_when_cancelled) throw;

@@ -72,7 +72,8 @@ DualMesh dual_of(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage&
 }
 
 /// Returns the places that are no site yet, each once: two cells may have been given the same corner.
-SurfacePoints new_places(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& places) {
+std::vector<PlaceToMend> new_places(const Mesh& mesh, const SurfacePoints& sites,
+                                    const std::vector<PlaceToMend>& places) {
   const auto key = [&](const SurfacePoint& point) {
     const Vec3 place =
         mesh.is_intrinsic() ? Vec3(point.face, point.barycentric[0], point.barycentric[1]) : position(mesh, point);
@@ -80,9 +81,9 @@ SurfacePoints new_places(const Mesh& mesh, const SurfacePoints& sites, const Sur
   };
   std::set<std::array<double, 3>> known;
   for (const SurfacePoint& site : sites) known.insert(key(site));
-  SurfacePoints result;
-  for (const SurfacePoint& place : places)
-    if (known.insert(key(place)).second) result.push_back(place);
+  std::vector<PlaceToMend> result;
+  for (const PlaceToMend& place : places)
+    if (known.insert(key(place.point)).second) result.push_back(place);
   return result;
 }
 
@@ -96,15 +97,15 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
   for (int round = 0; round < k_repair_rounds; ++round) {
     const std::vector<DualIssue> issues = find_dual_issues(mesh, current, stage);
     SurfacePoints sites = current.sites;
-    const SurfacePoints more = new_places(mesh, sites, places_to_mend(issues, static_cast<Index>(sites.size())));
+    const std::vector<PlaceToMend> more = new_places(mesh, sites, places_to_mend(mesh, current, issues));
     if (more.empty() || sites.size() + more.size() - kept > most) break;
     if (round >= k_settling_rounds) {
       fixed.resize(sites.size());
       std::iota(fixed.begin(), fixed.end(), 0);
     }
-    for (const SurfacePoint& place : more) {
-      if (is_on_boundary(mesh, place)) fixed.push_back(static_cast<Index>(sites.size()));
-      sites.push_back(place);
+    for (const PlaceToMend& place : more) {
+      if (place.is_around || is_on_boundary(mesh, place.point)) fixed.push_back(static_cast<Index>(sites.size()));
+      sites.push_back(place.point);
     }
     const JobStage part = stage.part(static_cast<double>(round) / k_repair_rounds, (round + 1.0) / k_repair_rounds);
     CentroidalVoronoiOptions options;

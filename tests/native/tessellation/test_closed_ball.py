@@ -51,6 +51,7 @@ SOLVABLE = [
     ("double strip", strip(), 40, 0),
     ("needle", needle(), 60, 0),
     ("needle", needle(), 120, 1),
+    ("spike", meshes.cone(32, 40, 1.0, 20.0), 400, 0),  # closed bisectors up to the tip, however small cells are
     ("thin tube", meshes.cylinder(32, 60, 0.2, 3.0), 16, 0),  # closed bisectors, with a border
     ("sheet with holes", meshes.holes(25), 40, 0),
     ("sheet with holes", meshes.holes(25), 50, 0),

@@ -241,6 +241,17 @@ def test_repair_of_a_strip_ends() -> None:
             cells.dual()
 
 
+@pytest.mark.parametrize("along", [2, 40])
+def test_around_the_tip_of_a_spike_few_sites_are_added(along: int) -> None:
+    """Cells near the tip close around it, however small they are: a site alone would be such a cell again."""
+    mesh = sb.Mesh(*meshes.cone(32, along, 1.0, 20.0))
+    cells = relaxed_cells(mesh, 400)
+    assert any(issue.kind == "closed_boundary" for issue in cells.dual("strict").issues)  # else nothing is tested
+    dual = cells.dual()
+    check_triangulation(mesh, dual)
+    assert dual.added < 60
+
+
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_disk_with_too_few_cells_for_a_triangle(count: int) -> None:
     mesh = sb.Mesh(*meshes.grid(9, 9))

@@ -29,7 +29,7 @@ struct DualIssue {
   };
   Kind kind;
   Index cell, other;   ///< `other`: k_none where one cell is concerned
-  SurfacePoint place;  ///< where one more site mends it
+  SurfacePoint place;  ///< where one more site mends it, or of a closed boundary one of three along it
 };
 
 std::string to_string(DualIssue::Kind kind);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "saddleback/mesh/surface_curve.h"
+
 #include "tessellation/cells/border_arcs.h"
 
 namespace saddleback {
@@ -239,15 +241,38 @@ std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi&
   return IssueFinder(mesh, cells, stage).take();
 }
 
-SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count) {
-  std::vector<std::uint8_t> mended(cell_count, 0);
-  SurfacePoints places;
-  for (const DualIssue& issue : issues) {
-    if (mended[issue.cell] || (issue.other != k_none && mended[issue.other])) continue;
-    mended[issue.cell] = 1;
-    if (issue.other != k_none) mended[issue.other] = 1;
-    places.push_back(issue.place);
-  }
+SurfacePoint point_along(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline, double share) {
+  const Index begin = cells.edge_offsets[polyline], end = cells.edge_offsets[polyline + 1];
+  const auto length = [&](Index i) {
+    return (cells.positions[cells.edge_points[i + 1]] - cells.positions[cells.edge_points[i]]).norm();
+  };
+  double left = 0;
+  for (Index i = begin; i + 1 < end; ++i) left += share * length(i);
+  Index i = begin;
+  while (i + 2 < end && left > length(i)) left -= length(i++);
+  const SurfacePoint &a = cells.points[cells.edge_points[i]], &b = cells.points[cells.edge_points[i + 1]];
+  const Index face = shared_face(mesh, a, b);
+  if (face == k_none) return a;
+  const double part = length(i) > 0 ? std::clamp(left / length(i), 0.0, 1.0) : 0;
+  const Vec3 place = (1 - part) * *barycentric_in(mesh, a, face) + part * *barycentric_in(mesh, b, face);
+  return {face, normalized_barycentric(place)};
+}
+
+std::vector<PlaceToMend> places_to_mend(const Mesh& mesh, const GeodesicVoronoi& cells,
+                                        const std::vector<DualIssue>& issues) {
+  std::vector<std::uint8_t> mended(cells.sites.size(), 0);
+  const auto is_new = [&](Index cell, Index other) {
+    if (mended[cell] || (other != k_none && mended[other])) return false;
+    mended[cell] = 1;
+    if (other != k_none) mended[other] = 1;
+    return true;
+  };
+  std::vector<PlaceToMend> places;
+  for (Index polyline = 0; polyline < polyline_count(cells); ++polyline)
+    if (cells.edge_closed[polyline] && is_new(cells.edge_cells[polyline][0], cells.edge_cells[polyline][1]))
+      for (int third = 0; third < 3; ++third) places.push_back({point_along(mesh, cells, polyline, third / 3.0), true});
+  for (const DualIssue& issue : issues)
+    if (is_new(issue.cell, issue.other)) places.push_back({issue.place, false});
   return places;
 }
 

@@ -35,8 +35,20 @@ std::vector<Index> cell_characteristics(const Mesh& mesh, const GeodesicVoronoi&
 /// Every violation of the closed-ball property, by kind and cell. O(V + F).
 std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage& stage = {});
 
-/// One place for each cell concerned: neighbors' complaints have often one cause.
-SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count);
+/// The point of a polyline at a share of its length, 0 to 1. O(points).
+SurfacePoint point_along(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline, double share);
+
+/// A place for one more site.
+struct PlaceToMend {
+  SurfacePoint point;
+  bool is_around;  ///< one of three around a thin part; they stay where they are, or would slip past each other
+};
+
+/// One place for each cell concerned: neighbors' complaints have often one cause. Where two cells meet along a closed
+/// curve these are three, evenly along it, and come first: the cell of one alone would close around a thin part, too,
+/// and toward the tip of a spike that would never end.
+std::vector<PlaceToMend> places_to_mend(const Mesh& mesh, const GeodesicVoronoi& cells,
+                                        const std::vector<DualIssue>& issues);
 
 /// Tells whether a point lies on the mesh's boundary. A site that parts a cell from the boundary does so only there: in
 /// the middle of its own cell it would meet both sides of a narrow strip again.

@@ -62,46 +62,54 @@ void mark_more(const GeodesicVoronoi& cells, const std::vector<DualIssue>& issue
     if (faulty[a] || faulty[b]) marked[a] = marked[b] = 1;
 }
 
+struct Exchanged {
+  Exchange told;
+  std::vector<std::uint8_t> is_around;  ///< (n,) sites put around thin parts: they stay
+};
+
 /// Moves spare sites to where they are missed, round by round. Tells what was wrong at first where that does not help.
-Exchange exchange(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage) {
+Exchanged exchange(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage) {
   const Mesh& mesh = relaxation.mesh();
   const auto count = static_cast<Index>(relaxation.state().sites.size());
   std::vector<std::uint8_t> is_moved(count, 0), settles(count, 0);
-  std::vector<DualIssue> first;
+  Exchanged result{{}, std::vector<std::uint8_t>(count, 0)};
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (int round = 0, vain = 0; round <= k_most_rounds && vain <= k_vain_rounds; ++round) {
     const double part = 1.0 / (k_most_rounds + 1);
     const JobStage here = stage.part(round * part, (round + 1) * part, message("Moving sites, round ", round + 1));
     const GeodesicVoronoi cells = look_at_cells(relaxation, options, here.part(0, 0.1));
     const std::vector<DualIssue> issues = find_dual_issues(mesh, cells, here);
-    if (issues.empty()) return {static_cast<Index>(std::ranges::count(is_moved, 1)), {}};
-    if (round == 0) first = issues;
+    if (issues.empty()) {
+      result.told = {static_cast<Index>(std::ranges::count(is_moved, 1)), {}};
+      return result;
+    }
+    if (round == 0) result.told.left = issues;
     vain = issues.size() < fewest ? 0 : vain + 1;
     fewest = std::min(fewest, issues.size());
     std::vector<std::uint8_t> is_needed = is_moved;
     for (Index site = 0; site < count; ++site)
       if (!relaxation.is_free(site)) is_needed[site] = 1;
     mark(issues, is_needed);
-    const SurfacePoints places = places_to_mend(issues, count);
+    const std::vector<PlaceToMend> places = places_to_mend(mesh, cells, issues);
     const std::vector<Index> spare = spare_sites(cells, relaxation.state().moments, is_needed, places.size());
     if (spare.empty()) break;
     Places next(relaxation);
     for (std::size_t i = 0; i < spare.size(); ++i) {
-      next.sites[spare[i]] = places[i];
+      next.sites[spare[i]] = places[i].point;
       is_moved[spare[i]] = 1;
-      settles[spare[i]] = is_on_boundary(mesh, places[i]) ? 0 : 1;
+      settles[spare[i]] = places[i].is_around || is_on_boundary(mesh, places[i].point) ? 0 : 1;
+      result.is_around[spare[i]] = places[i].is_around ? 1 : 0;
     }
     next.restore(relaxation, here.part(0.1, 0.3));
     relaxation.rest(others_than(settles));
     for (int step = 0; step < k_settling_steps && relaxation.advance_to_centers(here.part(0.3, 1)); ++step) {}
   }
-  return {0, std::move(first)};
+  return result;
 }
 
-/// Relaxes as far as nothing breaks the property.
+/// Relaxes as far as nothing breaks the property, all but the sites that are to stay.
 void relax_closed(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
-                  RelaxationLog& log) {
-  std::vector<std::uint8_t> stays(relaxation.state().sites.size(), 0);
+                  std::vector<std::uint8_t> stays, RelaxationLog& log) {
   relaxation.rest(stays);
   Places whole(relaxation);
   show(relaxation, options, log);
@@ -143,16 +151,18 @@ void relax_closed(Relaxation& relaxation, const CentroidalVoronoiOptions& option
 void close_balls(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
                  RelaxationLog& log, Exchange& result) {
   const Places before(relaxation);
+  Exchanged exchanged;
   try {
-    result = exchange(relaxation, options, stage.part(0, k_exchange));
+    exchanged = exchange(relaxation, options, stage.part(0, k_exchange));
   } catch (const Cancelled&) {
     if (options.stop.return_when_cancelled) before.restore(relaxation, JobStage());
     throw;
   }
+  result = std::move(exchanged.told);
   if (!result.left.empty()) before.restore(relaxation, stage.part(k_exchange, 1));
   if (result.moved == 0) return;
   log = log_of_start(relaxation);
-  relax_closed(relaxation, options, stage.part(k_exchange, 1), log);
+  relax_closed(relaxation, options, stage.part(k_exchange, 1), std::move(exchanged.is_around), log);
 }
 
 }  // namespace saddleback

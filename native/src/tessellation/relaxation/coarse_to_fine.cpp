@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "saddleback/mesh/sample.h"
-#include "saddleback/mesh/surface_curve.h"
 
 #include "tessellation/cells/cell_topology.h"
 #include "tessellation/relaxation/diagram.h"
@@ -20,24 +19,6 @@ constexpr double k_coarse_tolerance = 1e-5;
 constexpr double k_most_faulty = 0.2;  // of the coarse cells
 
 Index euler_characteristic(const Mesh& mesh) { return mesh.vertex_count() - mesh.edge_count() + mesh.face_count(); }
-
-/// Half way along a boundary between two cells.
-SurfacePoint middle_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
-  const Index begin = cells.edge_offsets[polyline], end = cells.edge_offsets[polyline + 1];
-  const auto length = [&](Index i) {
-    return (cells.positions[cells.edge_points[i + 1]] - cells.positions[cells.edge_points[i]]).norm();
-  };
-  double left = 0;
-  for (Index i = begin; i + 1 < end; ++i) left += length(i) / 2;
-  Index i = begin;
-  while (i + 2 < end && left > length(i)) left -= length(i++);
-  const SurfacePoint &a = cells.points[cells.edge_points[i]], &b = cells.points[cells.edge_points[i + 1]];
-  const Index face = shared_face(mesh, a, b);
-  if (face == k_none) return a;
-  const double share = length(i) > 0 ? std::clamp(left / length(i), 0.0, 1.0) : 0;
-  const Vec3 place = (1 - share) * *barycentric_in(mesh, a, face) + share * *barycentric_in(mesh, b, face);
-  return {face, normalized_barycentric(place)};
-}
 
 /// Cells that are no disks, or meet others as they should not: what lies between them says nothing there.
 std::vector<std::uint8_t> faulty_cells(const Mesh& mesh, const GeodesicVoronoi& cells) {
@@ -73,7 +54,8 @@ SurfacePoints refined(const Mesh& mesh, const GeodesicVoronoi& cells, const std:
   const auto there = static_cast<std::int64_t>(boundaries.size());
   const Index wanted = count - static_cast<Index>(sites.size());
   const auto taken = static_cast<Index>(std::min<std::int64_t>(wanted, there));
-  for (std::int64_t i = 0; i < taken; ++i) sites.push_back(middle_of(mesh, cells, boundaries[i * there / taken]));
+  for (std::int64_t i = 0; i < taken; ++i)
+    sites.push_back(point_along(mesh, cells, boundaries[i * there / taken], 0.5));
   if (wanted > taken) {
     const std::vector<double> density = density_within(cells, faulty, options.density);
     const SurfacePoints more = sample(mesh, {.count = wanted - taken, .density = density, .seed = seed});

@@ -26,9 +26,10 @@ void check_density(const Mesh& mesh, std::span<const double> density);
 /// CentroidalVoronoi's, of an energy. O(F).
 double normalized_energy(const Mesh& mesh, std::span<const double> density, double energy, std::size_t count);
 
-/// centroidal_voronoi as a part of other work; the cells of the result are left to find.
+/// centroidal_voronoi as a part of other work; the cells of the result are left to find. Sites that are relaxed are
+/// only exchanged.
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage);
+                              const CentroidalVoronoiOptions& options, const JobStage& stage, bool is_relaxed = false);
 
 /// The cells of such sites.
 GeodesicVoronoi relaxed_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites,
