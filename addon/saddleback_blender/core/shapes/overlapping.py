@@ -146,10 +146,10 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
     bent = order.bend(mapped, job)
     points, triangles, owner = bent.vertices, bent.triangles, bent.triangle_copy
     middle = np.asarray(order.placements.center.positions(order.mesh))
-    reach = np.zeros(len(factor))
-    np.maximum.at(
-        reach, np.repeat(owner, 3), np.linalg.norm(points[triangles.ravel()] - middle[np.repeat(owner, 3)], axis=1)
-    )
+    sizes = np.diff(bent.begins)
+    off = points - np.repeat(middle, sizes, axis=0)
+    reach, laid = np.zeros(len(factor)), sizes > 0
+    reach[laid] = np.sqrt(np.maximum.reduceat(np.einsum("ij,ij->i", off, off), bent.begins[:-1][laid]))
     pairs = _pairs(points, triangles, owner, None, job)
     times = np.zeros(len(factor))
     while len(pairs):
@@ -180,9 +180,7 @@ def _pairs(points: Reals, triangles: Indices, owner: Indices, among: Indices | N
 
     As they are once Blender has rounded them.
     """
-    used, corners = np.unique(triangles, return_inverse=True)
-    rounded = points[used].astype(np.float32).astype(np.float64)
-    found = find_crossings(rounded, corners.reshape(-1, 3).astype(np.int32), among, job)
+    found = find_crossings(points, triangles, among, job)
     owners = np.sort(owner[found].astype(np.int64), axis=1)
     pairs: NDArray[np.int64] = np.unique(owners[owners[:, 0] != owners[:, 1]], axis=0)
     return pairs
