@@ -3,6 +3,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from saddleback_blender.core.settings import DirectionFieldSettings, DistributeSettings
 from saddleback_blender.core.shapes.shape_presets import preset
+from saddleback_blender.core.shapes.shape_sizes import Placed, fitted_to_count
 from saddleback_blender.core.shapes.shape_templates import fans, fitted
 from saddleback_blender.core.surfaces.quaternions import turned
 from tests import meshes
@@ -38,6 +40,21 @@ def run(templates=None, arrays=BALL, cache=None, options=None, **settings):
 
 def panel(symmetry="1"):
     return DirectionFieldRequest(surface_of(*BALL), DirectionFieldSettings(symmetry=symmetry))
+
+
+@pytest.mark.parametrize("power", [1.0, 1.3, 2.0, 3.0, 4.0])
+@pytest.mark.parametrize("first", [700, 1100, 1250])
+def test_a_size_is_found_in_few_trials_however_the_count_falls_with_it(power, first):
+    trials = []
+
+    def place(size, most):
+        trials.append(size)
+        placements = range(min(int(first * size**-power), most))
+        return Placed(size, SimpleNamespace(placements=placements), ())
+
+    found = fitted_to_count(place, 1.0, 1000, fills=True, maximal=False)
+    assert abs(len(found.result.placements) - 1000) <= 50
+    assert len(trials) <= (3 if power < 4.0 else 5)
 
 
 def test_shapes_are_laid_bent_and_framed():

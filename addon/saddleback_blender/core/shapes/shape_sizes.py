@@ -17,6 +17,8 @@ LOOSE, FULL, PACKED = 0.40, 0.55, 0.70
 # Where the count is to fill the surface: by which share of it the number may differ.
 TOLERANCE = 0.05
 MOST_TRIALS = 7
+# How the count falls with the size: by its square, and, as two trials tell, by less where parts are thin.
+POWER, LEAST_POWER, MOST_POWER = 2.0, 1.0, 4.0
 STEADY = 0.5  # no trial is smaller than the one before by more, lest shapes become so small that millions fit
 MOST_ROOM = 2_000_000  # shapes that may fit: the search looks at room for all of them, however few are wanted
 SHRINK = 0.97  # more than what the count asks for, where shapes do not find room: by this once, twice, ...
@@ -64,10 +66,11 @@ def fitted_to_count(
     """The distribution whose number of shapes is nearest to the count, at sizes tried from the first on.
 
     Where shapes are to fill the surface they are as large as that so many of them do; else so small that all of them
-    find room.
+    find room. Each trial lays all shapes, so the next one makes use of what the last two tell.
     """
     most = None if maximal else int(MOST_OVER * count) + 1 if fills else count
     size, best, least = first, None, count + 1
+    power, before = POWER, (0.0, 0)
     for turn in range(MOST_TRIALS):
         trial = place(size, most)
         found = len(trial.result.placements)
@@ -75,7 +78,11 @@ def fitted_to_count(
             best, least = trial, abs(found - count)
         if least <= (max(1.0, TOLERANCE * count) if fills else 0):
             break
-        size *= max(STEADY, float(np.sqrt(found / count)) * (1.0 if fills else SHRINK ** (turn + 1)))
+        if fills and 0 < found != most and 0 < before[1] != most and size != before[0]:
+            told = -float(np.log(found / before[1]) / np.log(size / before[0]))
+            power = min(max(told, LEAST_POWER), MOST_POWER)
+        before = size, found
+        size *= max(STEADY, (found / count) ** (1.0 / power) * (1.0 if fills else SHRINK ** (turn + 1)))
     assert best is not None
     return best
 
