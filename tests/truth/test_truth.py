@@ -46,6 +46,7 @@ def test_random_input_meets_the_truths():
         ("cells.cells_of_places", 1000000000603),
         ("cells.cells_of_places", 1000000000718),
         ("cells.cells_of_places", 1000000000741),  # in line along the border, on a flat grid
+        ("cells.cells_of_places", 1000000044051),  # behind a site at a vertex, as if its ways bent there
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
         ("cell_parts.polygons_beside_barriers", 20406904),  # a corner on the point of a barrier that was tried

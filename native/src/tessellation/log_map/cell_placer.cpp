@@ -151,7 +151,8 @@ VertexPlace CellPlacer::place_after(Index node, Index previous, const VertexPlac
   const double length = unfolds ? unfolded_.length : graph_.arcs().length(arc);
   const double out = unfolded_.start_angle;
   const double distance = before.distance + length;
-  if (is_anchor(mesh_, vertex, back, out))
+  const bool is_center = before.found_by == VertexPlace::k_center;  // whose place is in no direction
+  if (!is_center && is_anchor(mesh_, vertex, back, out))
     return {polar(length, out - back), distance, previous, VertexPlace::k_after_another};
   const double heading = std::atan2(before.at.y(), before.at.x()) + turn_at(mesh_, vertex, back, out);
   return {before.at + polar(length, heading), distance, before.anchor, VertexPlace::k_after_another};
