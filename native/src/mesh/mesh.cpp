@@ -104,24 +104,10 @@ Mesh::Mesh(std::span<const double> coordinates, std::span<const Index> triangles
     twins_ = twins_of(edges);
   }
   stage.check();
-  order_vertices();
+  order_vertices(stage);
   if (is_intrinsic_) take_lengths(coordinates, metric);
   stage.update(0.5);
-  lengths_.resize(halfedge_count());
-  corner_angles_.resize(halfedge_count());
-  face_areas_.resize(face_count());
-  constexpr Index k_chunk = 4096;  // faces a thread takes at once
-  parallel_for(face_count(), 0, k_chunk, [&](Index f, int) {
-    if (f % k_chunk == 0) stage.check();
-    const Triangle& t = triangles_[f];
-    const FaceShape shape = is_intrinsic_ ? measure_face(std::span<const double, 3>(&lengths_[3 * f], 3))
-                                          : measure_face(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
-    face_areas_[f] = shape.area;
-    std::copy(shape.length.begin(), shape.length.end(), lengths_.begin() + 3 * f);
-    std::copy(shape.angle.begin(), shape.angle.end(), corner_angles_.begin() + 3 * f);
-  });
-  stage.check();
-  measure();
+  measure(stage);
   if (is_intrinsic_) measure_bird();
   stage.update(0.8);
   find_components();
@@ -135,11 +121,13 @@ Mesh::Mesh(std::span<const double> coordinates, std::span<const Index> triangles
 
 // One half-edge a vertex, the clockwise-most on a boundary; a vertex whose half-edges are not all met by rotating from
 // it joins several fans and is refused.
-void Mesh::order_vertices() {
+void Mesh::order_vertices(const JobStage& stage) {
+  constexpr Index k_at_a_time = 1 << 16;  // half-edges or vertices between two looks whether to stop
   first_halfedges_.assign(vertex_count(), k_none);
   boundary_.assign(vertex_count(), 0);
   std::vector<Index> degrees(vertex_count(), 0);
   for (Index h = 0; h < halfedge_count(); ++h) {
+    if (h % k_at_a_time == 0) stage.check();
     const Index v = from(h);
     ++degrees[v];
     if (first_halfedges_[v] == k_none || twins_[h] == k_none) first_halfedges_[v] = h;
@@ -147,6 +135,7 @@ void Mesh::order_vertices() {
   }
   Offenders bow_ties;
   for (Index v = 0; v < vertex_count(); ++v) {
+    if (v % k_at_a_time == 0) stage.check();
     Index met = 0, h = first_halfedges_[v];
     do {
       ++met;
@@ -213,7 +202,21 @@ void Mesh::measure_bird() {
       most > 0 ? k_rounding / std::sqrt(most) : std::numeric_limits<double>::min();  // all in one place: nothing told
 }
 
-void Mesh::measure() {
+void Mesh::measure(const JobStage& stage) {
+  constexpr Index k_chunk = 4096;  // faces a thread takes at once
+  lengths_.resize(halfedge_count());
+  corner_angles_.resize(halfedge_count());
+  face_areas_.resize(face_count());
+  parallel_for(face_count(), 0, k_chunk, [&](Index f, int) {
+    if (f % k_chunk == 0) stage.check();
+    const Triangle& t = triangles_[f];
+    const FaceShape shape = is_intrinsic_ ? measure_face(std::span<const double, 3>(&lengths_[3 * f], 3))
+                                          : measure_face(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    face_areas_[f] = shape.area;
+    std::copy(shape.length.begin(), shape.length.end(), lengths_.begin() + 3 * f);
+    std::copy(shape.angle.begin(), shape.angle.end(), corner_angles_.begin() + 3 * f);
+  });
+  stage.check();
   // Sums go in the order of the faces, whatever the number of threads.
   total_angles_.assign(vertex_count(), 0.0);
   double length_sum = 0;

@@ -17,7 +17,7 @@ LOOSE, FULL, PACKED = 0.40, 0.55, 0.70
 # Where the count is to fill the surface: by which share of it the number may differ.
 TOLERANCE = 0.05
 MOST_TRIALS = 7
-# How the count falls with the size: by its square, and, as two trials tell, by less where parts are thin.
+# The power of the size by which the count falls: 2 where all is wide, another, as two trials tell, where it is not.
 POWER, LEAST_POWER, MOST_POWER = 2.0, 1.0, 4.0
 STEADY = 0.5  # no trial is smaller than the one before by more, lest shapes become so small that millions fit
 MOST_ROOM = 2_000_000  # shapes that may fit: the search looks at room for all of them, however few are wanted

@@ -118,9 +118,9 @@ class Mesh {
        const JobStage& stage);
   std::array<Vec3, 3> laid_flat(Index h) const;
   bool is_second_side(Index h) const { return twins_[h] != k_none && twins_[h] < h; }
-  void order_vertices();
+  void order_vertices(const JobStage& stage);
   void take_lengths(std::span<const double> coordinates, const MeshMetric& metric);
-  void measure();
+  void measure(const JobStage& stage);
   void measure_bird();
   void find_components();
   void find_boundary_loops();
