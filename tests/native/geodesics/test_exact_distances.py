@@ -126,6 +126,21 @@ def test_a_spike_of_needles(length: float) -> None:
         assert (found <= (field.distances[i] + edge[i] - to_tip) * (1 + 1e-12)).all()
 
 
+@pytest.mark.parametrize("width", [1e-4, 1e-6])
+def test_sources_above_each_other_on_a_spike(width: float) -> None:
+    """No ray of the middle one meets the others or a corner: it would go round the spike as often as that is thin."""
+    count = 8
+    angle = 2 * np.pi / count * np.arange(count)
+    ring = width * np.column_stack([np.cos(angle), np.sin(angle)])
+    vertices = np.vstack([np.column_stack([ring, np.zeros(count)]), [[0, 0, 1]]])
+    face = np.arange(count)
+    mesh = sb.Mesh(vertices, np.column_stack([face, (face + 1) % count, np.full(count, count)]))
+    up = np.array([0.3, 0.5, 0.7])
+    field = sb.ExactField(mesh, sb.SurfacePoints([0, 2, 5], np.column_stack([(1 - up) / 2, (1 - up) / 2, up])))
+    assert field.window_count <= 200 * mesh.face_count
+    np.testing.assert_allclose(field.distances, 0.3, rtol=0, atol=2 * width)
+
+
 @pytest.mark.parametrize("level", [0, 1, 3])
 def test_cube_from_a_corner(level: int) -> None:
     vertices, triangles = meshes.cube()

@@ -21,8 +21,8 @@
 //    longer by a^2 / 2 of the way, or by no more than the gap where the vertex is next to v.
 //  - "One angle, one split" holds for rays that differ; two that are one but for rounding hide nothing.
 //  - What is left is looked for (see cover_again).
-// (5) Rays that have gone all round a tip, a vertex of a small angle, are dropped: needles to one apex would send them
-// round it for ever.
+// (5) Rays that have gone all round a tip, a vertex of a small angle, or a thin tube are dropped: needles to one apex
+// or along the tube would send them round it for ever.
 
 #include "geodesics/exact/exact_propagation.h"
 
@@ -55,7 +55,11 @@ constexpr double k_miss = 1e-7;
 constexpr double k_rounding = 16 * std::numeric_limits<double>::epsilon(), k_near = 1.0 / 16;
 constexpr double k_narrow_fan = 1e-12;  ///< radians; rounding of the sum of a vertex's angles
 constexpr double k_buckets_per_edge = 4;
-constexpr Index k_ahead = 4;  ///< windows, enough for memory to answer
+// A face this many times as long as high is a needle. Rays that go round what is thinner than its edges are long do so
+// among needles alone.
+constexpr double k_needle = 64;
+constexpr std::uint16_t k_usual_windows = 64;  ///< through one half-edge of a needle
+constexpr Index k_ahead = 4;                   ///< windows, enough for memory to answer
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 double squared(double x, double y) { return x * x + y * y; }
@@ -124,6 +128,8 @@ void ExactPropagation::release() {
   kept_ = {};
   bent_at_ = {};
   occupants_ = {};
+  passed_ = {};
+  earlier_ = {};
   due_ = {};
 }
 
@@ -267,6 +273,29 @@ inline bool ExactPropagation::circles_tip(const Window& w) const {
          (w.b0 == 0 && circles(surface_.tangent_of_tip(frame.from), w.sx, -w.sy));
 }
 
+/// Tells whether an earlier window of the same root offers all of this one a shorter way. So it is where rays have gone
+/// round a tube or a tip and come to an edge once more. Asked only where windows are unusually many.
+bool ExactPropagation::goes_round(const Window& w) {
+  if (passed_.empty()) passed_.resize(occupants_.size(), 0);
+  if (passed_[w.halfedge] < k_usual_windows) {
+    ++passed_[w.halfedge];
+    return false;
+  }
+  const std::uint64_t key = (static_cast<std::uint64_t>(w.root) << 32) | static_cast<std::uint32_t>(w.halfedge);
+  const auto [at, is_new] = earlier_.try_emplace(key, w);
+  if (is_new) return false;
+  Window& earlier = at->second;
+  // Between the ends of both windows the lead is linear in its sign; beyond the earlier one's it only grows.
+  const auto is_longer = [&](double x) {
+    const double through = std::clamp(x, earlier.b0, earlier.b1);
+    const double way = length_of(through - earlier.sx, earlier.sy) + std::abs(x - through);
+    return way * (1 + k_slack) < length_of(x - w.sx, w.sy);
+  };
+  if (earlier.sigma == w.sigma && is_longer(w.b0) && is_longer(w.b1)) return true;
+  earlier = w;
+  return false;
+}
+
 /// Propagates the part of a window that sources leave. The corners are asked first: they beat most windows that sources
 /// beat, and their test is cheaper.
 void ExactPropagation::pass_sources(const Window& window) {
@@ -303,6 +332,8 @@ void ExactPropagation::propagate(const Window& window) {
   const double at_from = distances_[frame.from] * (1 + k_slack) - sigma;
   const double at_to = distances_[frame.to] * (1 + k_slack) - sigma;
   if (is_beaten_by_corners(window) || (surface_.has_tips() && circles_tip(window))) return;
+  if (ay * k_needle < length && goes_round(window)) [[unlikely]]
+    return;
   const double ox = ax - sx, oy = ay - sy;
   const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
   // Nearly always told by this bound of the product of the two rays.

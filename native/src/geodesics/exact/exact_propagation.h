@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "saddleback/job.h"
@@ -71,6 +72,7 @@ class ExactPropagation {
   Window left_by_sources(Window window) const;
   bool is_beaten_by_corners(const Window& window) const;
   bool circles_tip(const Window& window) const;
+  bool goes_round(const Window& window);
   void propagate(const Window& window);
   void bend(Index vertex);
   void cone_opposite(Index vertex, Index out, double begin, double end);
@@ -83,6 +85,8 @@ class ExactPropagation {
   std::vector<double> distances_, bent_at_;
   std::vector<Arrival> arrivals_;
   std::vector<Occupant> occupants_;
+  std::vector<std::uint16_t> passed_;  ///< how many windows went through a needle; empty without needles
+  std::unordered_map<std::uint64_t, Window> earlier_;  ///< by root and half-edge, where many did
   std::vector<Index> due_;
   std::vector<WindowBlock*> kept_;
   std::int64_t window_count_ = 0, block_count_ = 0;  ///< done
