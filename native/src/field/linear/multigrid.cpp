@@ -237,20 +237,22 @@ void MultigridSolver<Scalar>::precondition(const std::vector<Scalar>& right, std
 }
 
 template <class Scalar>
-std::vector<Scalar> MultigridSolver<Scalar>::solve(const std::vector<Scalar>& right, std::vector<Scalar> guess,
-                                                   const Accuracy& accuracy, const JobStage& stage, int threads) const {
+std::vector<Scalar> MultigridSolver<Scalar>::solve_near(const GraphMatrix<Scalar>& matrix,
+                                                        const std::vector<Scalar>& right, std::vector<Scalar> guess,
+                                                        const Accuracy& accuracy, const JobStage& stage,
+                                                        int threads) const {
   threads = thread_count(threads);
-  const Index size = matrix_.size();
+  const Index size = matrix.size();
   std::vector<Scalar> x = std::move(guess), residual = right, step, image(size, Scalar(0)), direction = image;
   if (x.empty()) {
     x.assign(size, Scalar(0));
   } else {
-    for_rows(0, size, threads, [&](Index i) { residual[i] -= row_product(matrix_, i, x); });
+    for_rows(0, size, threads, [&](Index i) { residual[i] -= row_product(matrix, i, x); });
   }
   Workspace work(threads);
   const double enough = accuracy.residual * accuracy.residual * squared_norm(right, threads);
   const double first = squared_norm(residual, threads);
-  double norm = first, energy = 1;
+  double norm = first, energy = 1, size_of_x = 0;  // the latter squared, in the energy norm
   for (int iteration = 0; iteration < accuracy.iterations && norm > enough; ++iteration) {
     if (first > enough) stage.update(std::log(first / norm) / std::log(first / enough));
     precondition(residual, step, work, stage);
@@ -260,19 +262,22 @@ std::vector<Scalar> MultigridSolver<Scalar>::solve(const std::vector<Scalar>& ri
       sums[0] += times(conjugate(image[i]), step[i]);
       sums[1] += times(conjugate(step[i]), residual[i]);
     });
+    if (std::real(gain) <= accuracy.error * accuracy.error * size_of_x) break;
     shared /= energy;
     for_rows(0, size, threads, [&, last = shared](Index i) { direction[i] = step[i] - times(last, direction[i]); });
     energy = sums_of_rows<std::array<double, 1>>(size, threads, [&](Index i, auto& sums) {
-      image[i] = row_product(matrix_, i, direction);
+      image[i] = row_product(matrix, i, direction);
       sums[0] += std::real(times(conjugate(direction[i]), image[i]));
     })[0];
     if (!(energy > 0)) break;
     const Scalar length = gain / energy;
-    norm = sums_of_rows<std::array<double, 1>>(size, threads, [&](Index i, auto& sums) {
+    const auto sums_of_step = sums_of_rows<std::array<double, 2>>(size, threads, [&](Index i, auto& sums) {
       x[i] += times(length, direction[i]);
       residual[i] -= times(length, image[i]);
       sums[0] += std::norm(residual[i]);
-    })[0];
+      sums[1] += std::real(times(conjugate(x[i]), right[i]));
+    });
+    norm = sums_of_step[0], size_of_x = sums_of_step[1];
   }
   stage.update(1);
   return x;

@@ -26,11 +26,18 @@ class MultigridSolver {
   struct Accuracy {
     double residual = 1e-9;  ///< relative to the right side, 2-norm
     int iterations = 300;    ///< the most of them; what is reached then is returned
+    double error = 0;        ///< estimated, relative to the solution, both in the energy norm: enough as well
   };
   /// x with matrix x = right; starts from `guess` when it is not empty. About 20 iterations, by several threads (0: all
   /// cores). \throw Cancelled.
   std::vector<Scalar> solve(const std::vector<Scalar>& right, std::vector<Scalar> guess, const Accuracy& accuracy,
-                            const JobStage& stage, int threads = 0) const;
+                            const JobStage& stage, int threads = 0) const {
+    return solve_near(matrix_, right, std::move(guess), accuracy, stage, threads);
+  }
+  /// The same for another matrix near the own one, as with more on its diagonal: iterations then are some more.
+  std::vector<Scalar> solve_near(const GraphMatrix<Scalar>& matrix, const std::vector<Scalar>& right,
+                                 std::vector<Scalar> guess, const Accuracy& accuracy, const JobStage& stage,
+                                 int threads = 0) const;
 
   /// Room for cycles, used again from one to the next.
   class Workspace;

@@ -23,7 +23,7 @@ constexpr double k_shift = 0.05;
 
 /// Rounds of unit length and diffusion after that.
 constexpr int k_rounds = 2;
-constexpr Solver::Accuracy k_accuracy{.residual = 0.01};  // directions follow; only they are kept
+constexpr Solver::Accuracy k_accuracy{.residual = 1e-3, .error = 0.01};  // directions follow; only they are kept
 
 /// A vector, and what the matrix makes of it.
 struct Pair {
@@ -70,14 +70,13 @@ class Minimizer {
   /// everywhere and diffusion over the eigenvector's own scale, by turns, leave the singularities that the surface asks
   /// for [viertel2019].
   Vector even_out(const JobStage& stage) {
-    solver_.reset();
-    GraphMatrix<Complex> diffusion = matrix_;
+    // No eigenvalue is below the energy: the prepared matrix lacks no more than half, where the energy is not tiny.
+    GraphMatrix<Complex>& diffusion = matrix_;
     std::vector<double> share(mass_.size());
     for_faces([&](Index f) {
       share[f] = std::max(energy_[component(f)], 1.0) * mass_[f];
       diffusion.diagonal[f] += share[f];
     });
-    const Solver solver(std::move(diffusion), stage.part(0, 0.1));
     Vector result = std::move(current_.value);
     for (int round = 0; round < k_rounds; ++round) {
       Vector right(result.size());
@@ -86,8 +85,8 @@ class Minimizer {
         result[f] *= size > 0 ? 1 / size : 0;
         right[f] = share[f] * result[f];
       });
-      const JobStage part = stage.part(0.1 + 0.45 * round, 0.55 + 0.45 * round);
-      result = solver.solve(right, std::move(result), k_accuracy, part);
+      const JobStage part = stage.part(0.5 * round, 0.5 * (round + 1));
+      result = solver_->solve_near(diffusion, right, std::move(result), k_accuracy, part);
     }
     return result;
   }
