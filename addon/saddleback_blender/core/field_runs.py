@@ -190,8 +190,11 @@ def _vertex_normals(mesh: Any, vertices: Indices) -> Reals:
     """(k, 3) unit normals at vertices."""
     if not len(vertices):
         return np.empty((0, 3))
-    places = native.load().project(mesh, mesh.vertices[vertices])
-    return normals_at(mesh.vertices, mesh.triangles, places.faces, places.barycentric)
+    triangles = np.asarray(mesh.triangles)
+    corner_of = np.zeros(mesh.vertex_count, np.int64)
+    corner_of[triangles.ravel()] = np.arange(triangles.size)
+    corners = corner_of[vertices]
+    return normals_at(mesh.vertices, triangles, corners // 3, np.eye(3)[corners % 3])
 
 
 def _arrows(mesh: Any, field: Any, count: int, length: float, seed: int, progress: Progress) -> SurfaceArrows:
