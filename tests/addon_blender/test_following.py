@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that was made of a body goes with it: in every frame, in the view and in the final render, in copies."""
 
+from functools import cached_property
+
 import bpy
 import numpy as np
 import pytest
@@ -132,6 +134,7 @@ class Body:
         self.rest = rest.reshape(-1, 3).astype(float)
         shown.to_mesh_clear()
 
+    @cached_property
     def normals(self):
         """(V, 3) of the vertices."""
         corners = self.places[self.triangles]
@@ -146,7 +149,7 @@ class Body:
     def offset(self, found, points):
         """(n, 2) how high points are over places of the body, and how far to their side."""
         way = points - mixed(self.places, found)
-        normals = unit(mixed(self.normals(), found))
+        normals = unit(mixed(self.normals, found))
         height = np.einsum("ij,ij->i", way, normals)
         return np.column_stack([height, np.linalg.norm(way - height[:, None] * normals, axis=1)])
 
@@ -155,8 +158,7 @@ class Body:
         tree = BVHTree.FromPolygons(among.tolist(), self.triangles.tolist())
         near = [tree.find_nearest(point) for point in points.tolist()]
         corners = self.triangles[[triangle for _, _, triangle, _ in near]]
-        weights = [barycentric(np.array(at[0]), among[own]) for at, own in zip(near, corners, strict=True)]
-        return corners, np.array(weights)
+        return corners, barycentric(np.array([place for place, *_ in near]), among[corners])
 
 
 def unit(vectors):
@@ -168,10 +170,11 @@ def mixed(values, found):
     return np.einsum("ni,nij->nj", weights, values[corners])
 
 
-def barycentric(point, corners):
-    sides = (corners[1:] - corners[0]).T
-    (u, v), *_ = np.linalg.lstsq(sides, point - corners[0], rcond=None)
-    return np.array([1 - u - v, u, v])
+def barycentric(points, corners):
+    """(n, 3) weights of points in the planes of n triangles."""
+    sides = (corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
+    u, v = np.einsum("nij,nj->in", np.linalg.pinv(sides), points - corners[:, 0])
+    return np.column_stack([1 - u - v, u, v])
 
 
 def moved(matrix, places):

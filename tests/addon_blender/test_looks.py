@@ -211,19 +211,21 @@ def test_new_meshes_keep_the_edges_of_a_box(look):
     assert np.count_nonzero(on_corners) == 8
 
 
-def test_each_of_more_parts_than_cells_has_cells_and_a_frame_of_a_lattice(capfd):
-    planks = np.arange(230)[:, None, None] * (0.0, 0.0, 0.1) + [[0, 0, 0], [1, 0, 0], [1, 0.1, 0], [0, 0.1, 0]]
-    item = add_object("Planks", planks.reshape(-1, 3).tolist(), np.arange(920).reshape(-1, 4).tolist())
+def test_each_of_more_parts_than_cells_has_cells_and_a_frame_of_a_lattice(monkeypatch, capfd):
+    monkeypatch.setitem(looks.LOOKS["PANELS"].settings, "count", 20)  # a tenth of the parts are as many times more
+    monkeypatch.setitem(looks.LOOKS["LAMP"].settings, "count", 15)
+    planks = np.arange(23)[:, None, None] * (0.0, 0.0, 0.1) + [[0, 0, 0], [1, 0, 0], [1, 0.1, 0], [0, 0.1, 0]]
+    item = add_object("Planks", planks.reshape(-1, 3).tolist(), np.arange(92).reshape(-1, 4).tolist())
     assert apply("PANELS") == {"FINISHED"}
-    assert item.saddleback.tessellate.count == 200  # as the look has it
+    assert item.saddleback.tessellate.count == 20  # as the look has it
     cells = attribute(item, "saddleback_cell").reshape(-1, 4)
-    assert (cells >= 0).all() and cells.max() < 430
-    assert len(set(cells[:, 0])) == 230
-    assert "430 cells, so that each part has one" in jobs.state.line
+    assert (cells >= 0).all() and cells.max() < 43
+    assert len(set(cells[:, 0])) == 23
+    assert "43 cells, so that each part has one" in jobs.state.line
     assert apply("LAMP") == {"FINISHED"}
     shell = find_output(item, "shell").data
-    assert len(set(native.load().connected_parts(read_triangles(shell), len(shell.vertices)))) == 230
-    assert "in 230 pieces, since the mesh is in 230 parts: join those first" in capfd.readouterr().out
+    assert len(set(native.load().connected_parts(read_triangles(shell), len(shell.vertices)))) == 23
+    assert "in 23 pieces, since the mesh is in 23 parts: join those first" in capfd.readouterr().out
 
 
 @pytest.mark.parametrize("look", ["REMESH", "QUADS"])
@@ -401,7 +403,7 @@ def test_scales_leave_no_skin_bare_and_meet_only_where_they_overlap(look, make):
         assert not passing_pairs(shown)
     assert bpy.ops.saddleback.check_distribution() == {"FINISHED"}
     assert "none touches another" in jobs.state.line  # of what is not overlapped
-    if look == "SCALES":
+    if look == "SCALES" and make == "torus":
         bpy.ops.saddleback.distribute(no_crossings=False)
         assert passing_pairs(find_output(item, "shapes")) > 100  # so the count can fail
 

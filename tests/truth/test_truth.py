@@ -16,6 +16,14 @@ SECONDS = 60.0
 SETTLED_SEED, SETTLED_CASES = families.NEWEST, 3000
 
 
+@pytest.fixture(scope="module")
+def worker():
+    """One process for all cases of old findings; a case that it dies of, or hangs in, is told, and another follows."""
+    worker = fuzz.Worker()
+    yield worker
+    worker.close()
+
+
 def test_random_input_meets_the_truths():
     """The same cases each time: with new seeds a search still finds something every few minutes, see docs/truths.md.
 
@@ -95,10 +103,8 @@ def test_random_input_meets_the_truths():
         ("relaxation.corners_of_the_plane", 20407879),  # a corner of flat angles: three times the tolerance
     ],
 )
-def test_what_a_search_found_stays_mended(name, seed):
-    worker = fuzz.Worker()
+def test_what_a_search_found_stays_mended(worker, name, seed):
     outcome = worker.run(fuzz.random_case(load_checks()[name], seed))
-    worker.close()
     assert outcome.word == "fine", outcome.text
 
 
