@@ -11,6 +11,7 @@ import importlib
 import json
 import os
 import sys
+import time
 import traceback
 from pathlib import Path
 
@@ -23,6 +24,7 @@ sys.path += [path for path in os.environ.get("SADDLEBACK_PYTHONPATH", "").split(
 import bpy
 from hands import Screen
 
+TURN = 0.005  # seconds of rest in each turn of Blender's main loop, which never sleeps while events are simulated
 PLAYS = importlib.import_module(os.environ.get("SADDLEBACK_UI_PLAYS", "scenarios"))
 
 
@@ -50,7 +52,12 @@ def play(plays):
         sys.stdout.flush()
         os._exit(0)  # quitting in order may ask to save, and nothing of this Blender is to be kept
 
+    def rest():
+        time.sleep(TURN)
+        return 0.0
+
     bpy.app.timers.register(tick, first_interval=1.0, persistent=True)
+    bpy.app.timers.register(rest, persistent=True)
 
 
 def main():

@@ -11,6 +11,7 @@ import bpy
 FOLDER = Path(os.environ["SADDLEBACK_UI_FOLDER"])
 FRAME = 0.05  # seconds in which Blender handles the events that were sent and draws
 PATIENCE = 60.0
+STEP = 9  # pixels; a button is more than twice as high
 
 
 class Screen:
@@ -72,23 +73,27 @@ class Screen:
 
     def _find(self, copy, is_it, is_pair=False):
         """A place just below the first at which what Blender copies of what is under the mouse is sought."""
-        clipboard = bpy.context.window_manager
         left, bottom, width = self.sidebar.x, self.sidebar.y, self.sidebar.width
         # Down the middle first; then where buttons stand side by side.
         columns = [left + across for across in (width // 2 - 20, width // 5, width * 2 // 3, width - 45)]
         self.move(self.view.x + 200, self.view.y + 300)
         yield 12 * FRAME  # until Blender has left what the mouse was over before
-        for x, y in product(columns[is_pair:], range(bottom + self.sidebar.height - 8, bottom + 8, -9)):
-            self.move(x, y)
-            yield FRAME
-            clipboard.clipboard = ""
-            operator = getattr(bpy.ops.ui, copy)
-            with self.override(self.sidebar):
-                if operator.poll():
-                    operator()
-            if is_it(clipboard.clipboard):
-                return x, y - 7  # into the middle: a press on the very edge may miss
+        for x, y in product(columns[is_pair:], range(bottom + self.sidebar.height - 8, bottom + 8, -2 * STEP)):
+            if is_it((yield from self._copied(copy, x, y))):
+                is_higher = is_it((yield from self._copied(copy, x, y + STEP)))
+                return x, y + (STEP if is_higher else 0) - 7  # into the middle: a press on the very edge may miss
         raise AssertionError("what is sought is not in the sidebar")
+
+    def _copied(self, copy, x, y):
+        """What Blender copies of what is there."""
+        self.move(x, y)
+        yield FRAME
+        bpy.context.window_manager.clipboard = ""
+        operator = getattr(bpy.ops.ui, copy)
+        with self.override(self.sidebar):
+            if operator.poll():
+                operator()
+        return bpy.context.window_manager.clipboard
 
     def click_until(self, place, is_done):
         """Clicks a button until something happens: the first click on a region may only wake it."""
