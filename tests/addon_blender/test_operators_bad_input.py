@@ -82,7 +82,14 @@ def test_empty_mesh_and_mesh_without_faces():
     add_object("Nothing", [], [])
     refuse("'Nothing' is empty")
     add_object("Wire", [(0, 0, 0), (1, 0, 0)], [])
-    refuse("'Wire' has no faces")
+    refuse("'Wire' has no faces; choose")
+
+
+def test_modifiers_that_leave_no_faces():
+    item = sphere()
+    item.vertex_groups.new(name="Nothing")
+    item.modifiers.new("Mask", "MASK").vertex_group = "Nothing"
+    refuse("'Sphere' has no faces as its modifiers leave it", "Realize Instances", use_modifiers=True)
 
 
 def test_selection_is_missing_or_off_the_surface():

@@ -60,6 +60,11 @@ def read_surface(
         raise BadInputError(f"'{source.name}': vertex {vertex} is not at a finite place; delete it or press Repair")
     triangles = read_triangles(mesh)
     if not len(triangles):
+        if mesh != source.data and len(source.data.polygons):
+            raise BadInputError(
+                f"'{source.name}' has no faces as its modifiers leave it; where Geometry Nodes make instances, let "
+                "them end with Realize Instances"
+            )
         raise BadInputError(f"'{source.name}' has no faces; choose an object with a surface")
     if source.matrix_world.determinant() < 0:  # a mirrored object shows its faces from the other side
         triangles = np.ascontiguousarray(triangles[:, ::-1])
