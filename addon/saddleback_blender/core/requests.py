@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from typing import TypeVar
@@ -29,6 +29,7 @@ from .settings import (
 )
 from .shapes.shape_templates import ShapeTemplate, Solid
 from .solids.cell_mesh import CellShape
+from .surfaces.seen_places import WORLD
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -39,7 +40,8 @@ class Surface:
 
     `vertices` (n, 3) and `triangles` (F, 3), counter-clockwise seen from outside. `used` (n,) gives each vertex its
     number in the Blender mesh of `vertex_count` vertices; None where all are used. `kept` (F,) gives each triangle its
-    number among the Blender mesh's; None where all are in the surface.
+    number among the Blender mesh's; None where all are in the surface. `place` (4, 4) is the frame in which what is
+    made of it is kept.
     """
 
     name: str  # of the object, for messages
@@ -49,6 +51,7 @@ class Surface:
     used: Indices | None = None
     kept: Indices | None = None
     metric: str = ""  # names the lengths by which it is measured, where they are not those of space
+    place: Reals = field(default_factory=lambda: WORLD, repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -142,7 +145,7 @@ def _content(value: object) -> Iterator[object]:
         yield value.func.__qualname__
         yield from _content(value.args)
     elif isinstance(value, Surface):
-        yield from (value.key, value.vertex_count, value.used, value.kept)
+        yield from (value.key, value.vertex_count, value.used, value.kept, value.place)
     elif is_dataclass(value):
         for field in fields(value):
             yield field.name

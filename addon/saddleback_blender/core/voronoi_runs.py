@@ -259,7 +259,7 @@ def _lifted(
     )
     if not request.settings.make_cells:
         return result
-    mesh = cells_of(space.mesh, lifted.split(), shape_of(request.settings), key, progress, cache)
+    mesh = cells_of(space.mesh, lifted.split(), shape_of(request.settings), key, progress, cache, request.surface.place)
     return replace(result, mesh=mesh)
 
 

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ... import compat
@@ -83,7 +84,8 @@ def read_surface(
     used, triangles = _compact(triangles, count + len(copied))
     if len(copied):
         used = np.concatenate([np.arange(count, dtype=np.int32), copied])[slice(None) if used is None else used]
-    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used, kept)
+    place = np.array(level_place(source), np.float64)
+    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used, kept, place=place)
 
 
 def read_triangles(mesh: bpy.types.Mesh) -> Indices:
@@ -150,6 +152,13 @@ def read_vertex_normals(mesh: bpy.types.Mesh) -> Reals:
 def _unit(vectors: Reals) -> Reals:
     units: Reals = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(np.float64).tiny)
     return units
+
+
+def level_place(source: bpy.types.Object) -> Matrix:
+    """The source's place and turn without its scale, so that round tubes and instances stay round."""
+    location, rotation, _ = source.matrix_world.decompose()
+    place: Matrix = Matrix.Translation(location) @ rotation.to_matrix().to_4x4()
+    return place
 
 
 def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:

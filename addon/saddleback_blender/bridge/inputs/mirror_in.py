@@ -9,8 +9,7 @@ import numpy as np
 from ... import compat
 from ...core.requests import Surface
 from ...core.surfaces.mirrors import Mirror
-from ..outputs.out_collection import level_place
-from .mesh_in import read_surface
+from .mesh_in import level_place, read_surface
 
 
 def read_mirror(source: bpy.types.Object, mesh: bpy.types.Mesh, part: Surface) -> Mirror:

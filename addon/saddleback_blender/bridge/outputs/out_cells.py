@@ -20,11 +20,11 @@ from ...finishes import material_of, palette_of
 from ...looks import NO_LOOK, finish_of
 from ..inputs.carried_in import read_carried
 from ..inputs.materials_in import shown_materials
-from ..inputs.mesh_in import mesh_of
+from ..inputs.mesh_in import level_place, mesh_of
 from .carried_out import write_groups, write_layers
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 
 CELLS_ROLE = "cells"
 CELL_ATTRIBUTE = "saddleback_cell"

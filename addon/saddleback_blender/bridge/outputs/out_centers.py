@@ -12,9 +12,10 @@ from ...core.errors import BadInputError
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.surfaces.centers import euler_to_normal, instance_size
+from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import directions_to_place, find_output, hair, level_place, replace_object, to_place
+from .out_collection import directions_to_place, find_output, hair, replace_object, to_place
 
 CENTERS_ROLE = "centers"
 CELL_ATTRIBUTE, AREA_ATTRIBUTE = "saddleback_cell", "saddleback_area"

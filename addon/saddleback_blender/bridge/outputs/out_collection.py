@@ -142,13 +142,6 @@ def _reachable(context: bpy.types.Context) -> list[bpy.types.Collection]:
     return [scene, *scene.children_recursive]
 
 
-def level_place(source: bpy.types.Object) -> Matrix:
-    """The source's place and turn without its scale, so that round tubes and instances stay round."""
-    location, rotation, _ = source.matrix_world.decompose()
-    place: Matrix = Matrix.Translation(location) @ rotation.to_matrix().to_4x4()
-    return place
-
-
 def hair(source: bpy.types.Object) -> float:
     """A distance in the world that is enough for something to be seen before the source's surface.
 

@@ -13,8 +13,9 @@ import numpy as np
 from ... import nodes
 from ...core.results import PathsResult, Reals
 from ...core.solids.level_lines import LevelLines
+from ..inputs.mesh_in import level_place
 from .following import Follower
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 
 ISOLINES_ROLE, PATHS_ROLE = "isolines", "paths"
 LENGTH = "saddleback_length"  # custom property of the paths object: the sum of their lengths, world units

@@ -12,9 +12,10 @@ from ... import compat, nodes
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.solids.edge_network import EdgeNetwork, edge_network, long_lines
+from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 from .out_curves import Lines, write_lines
 
 EDGES_ROLE = "edges"

@@ -9,9 +9,10 @@ import numpy as np
 from ... import compat, nodes
 from ...core.fields.arrow_mesh import arrow_mesh
 from ...core.results import FieldResult, Reals
+from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import write_attributes
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 from .out_curves import Lines, write_lines
 
 ARROWS_ROLE, STREAMLINES_ROLE = "arrows", "streamlines"

@@ -11,8 +11,9 @@ from ...core.ribbon_runs import RibbonResult
 from ...core.settings import RibbonSettings
 from ...core.shapes.shape_templates import Picture
 from ...image_materials import image_material
+from ..inputs.mesh_in import level_place
 from .following import Follower
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 from .out_shapes import UV_NAME, fill, materials_of
 
 RIBBON_ROLE = "ribbon"

@@ -16,11 +16,11 @@ from ...core.shapes.shape_templates import ShapeTemplate
 from ...follow_nodes import stop_following
 from ..inputs.carried_in import read_carried
 from ..inputs.materials_in import shown_materials
-from ..inputs.mesh_in import mesh_of
+from ..inputs.mesh_in import level_place, mesh_of
 from .carried_out import write_groups
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 from .out_shapes import RANDOM_ATTRIBUTE, SHAPE_ATTRIBUTE, SHAPE_UV, add_materials
 
 CUT_ROLE = "shape cut"

@@ -22,14 +22,13 @@ from ...image_materials import image_material
 from ...looks import NO_LOOK, finish_of
 from ...shape_nodes import set_shapes
 from ..inputs.materials_in import shown_materials
-from ..inputs.mesh_in import modified
+from ..inputs.mesh_in import level_place, modified
 from ..tokens import NAME, ROLE, layer_of
 from .following import Follower
 from .hand_edits import make_ordinary
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
     directions_to_place,
-    level_place,
     mark,
     outputs_of,
     remove_object,

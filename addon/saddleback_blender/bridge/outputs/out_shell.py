@@ -13,9 +13,10 @@ from ...core.results import CellsResult, LampShell
 from ...core.settings import TessellateSettings
 from ...finishes import material_of
 from ...looks import NO_LOOK
+from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import level_place, replace_object, to_place
+from .out_collection import replace_object, to_place
 
 SHELL_ROLE = "shell"
 WALL_ATTRIBUTE = "saddleback_wall"  # how thick the solid is, in world units

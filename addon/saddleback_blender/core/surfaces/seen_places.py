@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..results import Reals
 
+WORLD: Reals = np.eye(4)  # the frame of the world
 NOISE_BITS = 46  # what is below so many of the largest number's is rounding
 
 
