@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import concurrent.futures
+import functools
 import hashlib
 import json
 import os
@@ -52,13 +53,32 @@ def test_clang_format():
     run(BIN / "clang-format", "--dry-run", "--Werror", *sources(".h", ".cpp", ".cu", ".cuh"))
 
 
-def include_digest(text: bytes) -> str:
-    """Digest what every verdict depends on besides the file itself: the rules, the tool, and all our headers."""
-    digest = hashlib.sha256((ROOT / ".clang-tidy").read_bytes() + (ROOT / "tests/requirements.txt").read_bytes())
+@functools.cache
+def headers_of(file: Path) -> frozenset[Path]:
+    """Return all of our headers that a file includes, also through others; by the ends of their paths."""
+    found, last = set(), {file}
+    while last:
+        names = {name for path in last for name in re.findall(r'#include "([^"]+)"', path.read_text(encoding="utf-8"))}
+        last = {header for name in names for header in headers_by_end().get(name, ())} - found
+        found |= last
+    return frozenset(found)
+
+
+@functools.cache
+def headers_by_end() -> dict[str, set[Path]]:
+    """Return our headers by all that they can be included as: mesh/mesh.h, mesh.h."""
+    found: dict[str, set[Path]] = {}
     for header in sources(".h", ".cuh"):
-        digest.update(header.read_bytes())
-    digest.update(text)
-    return digest.hexdigest()
+        parts = header.relative_to(ROOT).parts
+        for i in range(len(parts)):
+            found.setdefault("/".join(parts[i:]), set()).add(header)
+    return found
+
+
+def include_digest(file: Path) -> str:
+    """Digest what a verdict depends on: the rules, the tool, the file, and our headers that it includes."""
+    read = [ROOT / ".clang-tidy", ROOT / "tests/requirements.txt", file, *sorted(headers_of(file))]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in read)).hexdigest()
 
 
 # Sources are read without the headers that the build compiles before, so that each must include what it uses.
@@ -73,7 +93,7 @@ WITHOUT_PRECOMPILED = [
 
 def tidy(file: str) -> str:
     """Return what clang-tidy says of one file, "" when it is content; files that have passed are not read again."""
-    verdict = CACHE / include_digest(Path(file).read_bytes())
+    verdict = CACHE / include_digest(Path(file))
     if verdict.exists():
         return ""
     # -w: the compiler's own warnings are GCC's business, and errors there.
@@ -96,14 +116,7 @@ def changed() -> set[Path]:
 
 def worth_reading(differing: set[Path]) -> set[Path]:
     """Return these files and all of ours that include one of them, also through other headers."""
-    texts = {path: path.read_text(encoding="utf-8") for path in sources(".h", ".cpp")}
-    included = {path: set(re.findall(r'#include "([^"]+)"', text)) for path, text in texts.items()}
-    found, last = set(differing), set(differing)
-    while last:
-        names = {path.as_posix().split("/include/")[-1].split("/src/")[-1] for path in last}
-        last = {path for path, mine in included.items() if mine & names} - found
-        found |= last
-    return found
+    return differing | {path for path in sources(".h", ".cpp") if headers_of(path) & differing}
 
 
 def test_clang_tidy():
@@ -124,3 +137,6 @@ def test_a_source_is_read_again_when_a_header_of_its_own_changed():
     engine = ROOT / "native/src/geodesics/exact"
     assert engine / "exact_propagation.cpp" in worth_reading({engine / "exact_queue.h"})
     assert worth_reading({engine / "exact_path.cpp"}) == {engine / "exact_path.cpp"}
+    bindings = ROOT / "native/bindings"
+    assert bindings / "bind_state.cpp" in worth_reading({bindings / "convert/state.h"})
+    assert bindings / "convert/state.h" in headers_of(bindings / "bind_state.cpp")

@@ -34,7 +34,7 @@ class MultigridSolver {
                             const JobStage& stage, int threads = 0) const {
     return solve_near(matrix_, right, std::move(guess), accuracy, stage, threads);
   }
-  /// The same for another matrix near the own one, as with more on its diagonal: iterations then are some more.
+  /// Solves with another matrix near the own one, as with more on its diagonal: iterations then are some more.
   std::vector<Scalar> solve_near(const GraphMatrix<Scalar>& matrix, const std::vector<Scalar>& right,
                                  std::vector<Scalar> guess, const Accuracy& accuracy, const JobStage& stage,
                                  int threads = 0) const;
