@@ -43,7 +43,7 @@ class Artist(Screen):
             yield 4 * FRAME
             for _ in range(8):
                 self.window.event_simulate(type=wheel, value="PRESS", x=x, y=y)
-                yield FRAME
+                yield 0.0
             yield 6 * FRAME
             ends.append(self.sidebar.view2d.region_to_view(0, 0)[1])
         return ends[1] - ends[0]

@@ -12,6 +12,7 @@ FOLDER = Path(os.environ["SADDLEBACK_UI_FOLDER"])
 FRAME = 0.05  # seconds in which Blender handles the events that were sent and draws
 PATIENCE = 60.0
 STEP = 9  # pixels; a button is more than twice as high
+known_places = {}  # where in the sidebar what is sought was last
 
 
 class Screen:
@@ -65,23 +66,26 @@ class Screen:
         """Where in the sidebar an operator's button is, by its command."""
         is_it = lambda copied: copied.startswith(command)  # noqa: E731 - asked again and again
         is_pair = "apply_look" in command  # two in a row
-        return (yield from self._find("copy_python_command_button", is_it, is_pair))
+        return (yield from self._find(command, "copy_python_command_button", is_it, is_pair))
 
     def find_switch(self, name):
         """Where in the sidebar a property is, by the end of its path."""
-        return (yield from self._find("copy_data_path_button", lambda copied: copied.endswith(name)))
+        return (yield from self._find(name, "copy_data_path_button", lambda copied: copied.endswith(name)))
 
-    def _find(self, copy, is_it, is_pair=False):
+    def _find(self, name, copy, is_it, is_pair=False):
         """A place just below the first at which what Blender copies of what is under the mouse is sought."""
         left, bottom, width = self.sidebar.x, self.sidebar.y, self.sidebar.width
         # Down the middle first; then where buttons stand side by side.
         columns = [left + across for across in (width // 2 - 20, width // 5, width * 2 // 3, width - 45)]
         self.move(self.view.x + 200, self.view.y + 300)
         yield 12 * FRAME  # until Blender has left what the mouse was over before
-        for x, y in product(columns[is_pair:], range(bottom + self.sidebar.height - 8, bottom + 8, -2 * STEP)):
+        rows = range(bottom + self.sidebar.height - 8, bottom + 8, -2 * STEP)
+        for x, y in [*known_places.get(name, ()), *product(columns[is_pair:], rows)]:
             if is_it((yield from self._copied(copy, x, y))):
                 is_higher = is_it((yield from self._copied(copy, x, y + STEP)))
-                return x, y + (STEP if is_higher else 0) - 7  # into the middle: a press on the very edge may miss
+                y += STEP if is_higher else 0
+                known_places[name] = [(x, y)]
+                return x, y - 7  # into the middle: a press on the very edge may miss
         raise AssertionError("what is sought is not in the sidebar")
 
     def _copied(self, copy, x, y):

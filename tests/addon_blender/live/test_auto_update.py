@@ -49,6 +49,12 @@ def switch_on(item):
     steps()
 
 
+@pytest.fixture(autouse=True)
+def little_rest(monkeypatch):
+    """Nobody is at a stroke, whose end results wait for."""
+    monkeypatch.setattr(live, "REST", 0.03)
+
+
 @pytest.fixture
 def item():
     """A ball with cells that follow."""
