@@ -83,14 +83,26 @@ class Search {
     patch.most = farthest + k_jung * longest;
     if (patch.most <= known_) return;
     for (const Probe& corner : patch.corner) {
-      double by_face = 0, by_way = 0;
-      for (const Probe& other : patch.corner) {
-        const Vec3 foot = position(to_, nearest_on_face(to_, corner.nearest, other.place));
-        by_face = std::max(by_face, (foot - other.place).norm());
+      double by_way = 0;
+      for (const Probe& other : patch.corner)
         by_way = std::max(by_way, corner.distance + (other.place - corner.place).norm());
-      }
-      patch.most = std::min({patch.most, by_face, by_way});
+      patch.most = std::min({patch.most, most_from(corner.nearest, patch), by_way});
     }
+  }
+
+  /// The distance from one face of the other mesh beyond which no point of the patch is.
+  double most_from(Index face, const Patch& patch) const {
+    double most = 0;
+    for (const Probe& corner : patch.corner)
+      most = std::max(most, (position(to_, nearest_on_face(to_, face, corner.place)) - corner.place).norm());
+    return most;
+  }
+
+  /// Tells whether the face that is nearest to the middle settles a patch: so it is where the meshes are the same,
+  /// though at its corners other faces are as near.
+  bool is_settled_by_middle(const Patch& patch) const {
+    const Vec3 middle = (patch.corner[0].place + patch.corner[1].place + patch.corner[2].place) / 3;
+    return most_from(probe(middle, patch.corner[0].nearest).nearest, patch) <= known_;
   }
 
   std::vector<Patch> faces(const JobStage& stage) const {
@@ -124,6 +136,7 @@ class Search {
     parallel_for(count, threads_, 64, [&](Index i, int) {
       stage.check();
       const Patch& patch = patches[i];
+      if (is_settled_by_middle(patch)) return;  // none of its quarters is farther than 0
       std::array<Vec3, 3> middle;
       std::array<Probe, 3> at_middle;
       for (int side = 0; side < 3; ++side) {
