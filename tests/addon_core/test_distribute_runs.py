@@ -2,7 +2,7 @@
 """Shapes on a surface as the add-on asks for them: counts, sizes, fields, what is made of the placements."""
 
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -294,12 +294,24 @@ def test_shapes_that_overlap_pass_through_none_if_asked(shapes):
     assert len(set(clear.bent.polygon_copy)) == clear.class_counts.sum()
 
 
+TWO_SHEETS = meshes.grid(12)
+TWO_SHEETS = (
+    np.concatenate([TWO_SHEETS[0], TWO_SHEETS[0] + (0.0, 0.0, 1e-7)]),
+    np.concatenate([TWO_SHEETS[1], TWO_SHEETS[1] + len(TWO_SHEETS[0])]),
+)
+
+
+@pytest.mark.parametrize("arrays", [BALL, TWO_SHEETS], ids=["smaller", "left out"])
+def test_copies_bent_to_be_cleared_are_those_that_are_shown(arrays):
+    cache, options = Cache(2**28), {"arrays": arrays, "count": 80, "overlap": 0.6, "no_crossings": True}
+    # Where they were cleared before they are bent anew, all at once.
+    first, again = (run([*preset("SCALES"), *preset("LEAVES")], cache=cache, **options).bent for _ in range(2))
+    for field in fields(first):
+        assert np.array_equal(getattr(first, field.name), getattr(again, field.name)), field.name
+
+
 def test_shapes_that_pass_through_others_at_any_size_are_missing_and_told():
-    vertices, triangles = meshes.grid(12)
-    twice = np.concatenate([vertices, vertices + (0.0, 0.0, 1e-7)])
-    result = run(
-        arrays=(twice, np.concatenate([triangles, triangles + len(vertices)])), count=80, overlap=0.5, no_crossings=True
-    )
+    result = run(arrays=TWO_SHEETS, count=80, overlap=0.5, no_crossings=True)
     missing = result.class_counts.sum() - len(set(result.bent.polygon_copy))
     assert missing > 0 and not passing_pairs(result)
     assert result.warnings[-1:] == distribute_texts.left_out(missing)

@@ -213,7 +213,11 @@ def crossings(mesh: sb.Mesh, rng: Random) -> None:
     shift = rng.choice([0.0, 0.3]) * float(np.ptp(mesh.vertices)) * rng.normal(size=3)
     vertices = np.vstack([mesh.vertices, mesh.vertices + shift])
     triangles = np.vstack([mesh.triangles[chosen], mesh.triangles[chosen] + mesh.vertex_count]).astype(np.int32)
-    found = {tuple(pair) for pair in sb.self_crossings(vertices, triangles).tolist()}
+    pairs = sb.self_crossings(vertices, triangles)
+    found = {tuple(pair) for pair in pairs.tolist()}
+    whose = rng.integers(0, 6, len(triangles))
+    owned = sb.self_crossings(vertices, triangles, owners=whose)
+    assert np.array_equal(owned, pairs[whose[pairs[:, 0]] != whose[pairs[:, 1]]]), "other pairs of different owners"
     corners = [tuple(tuple(map(Fraction, vertices[v].tolist())) for v in face) for face in triangles.tolist()]
     low, high = vertices[triangles].min(axis=1), vertices[triangles].max(axis=1)
     for a, b in combinations(range(len(triangles)), 2):

@@ -60,7 +60,7 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     drawn = whole.mapped
     bent = outlines = values = None
     if settings.make_bent:
-        bent = bent_copies(mesh, drawn, templates, settings, request.threads, progress, whole.left_out)
+        bent = bent_copies(mesh, drawn, templates, settings, request.threads, progress, whole.left_out, whole.bent)
     bent_anchors = outline_anchors = None
     triangles = np.asarray(mesh.triangles)
     if bent is not None and settings.follow_surface:
@@ -241,13 +241,19 @@ def _drawn(
         laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.threads
     )  # fmt: skip
 
+    bent = None  # not kept: it is far larger than all else
+
     def lay() -> Whole:
+        nonlocal bent
         with progress.stage(0.9, "laying shapes over each other") as job:
-            return map_whole(order, overlap, clears and settings.make_bent, job)
+            whole = map_whole(order, overlap, clears and settings.make_bent, job)
+        bent = whole.bent
+        return replace(whole, bent=None)
 
     drawn = content_of([settings.fit, clears and settings.make_bent, [solid.vertices for solid in solids if solid]])
     key = ("overlapping shapes", *laid.key, drawn)
-    return cache.get(key, lay, lambda found: BYTES_PER_SHAPE * len(found.mapped)), templates
+    whole = cache.get(key, lay, lambda found: BYTES_PER_SHAPE * len(found.mapped))
+    return replace(whole, bent=bent), templates
 
 
 def _field(request: DistributeRequest, mesh: Any, progress: Progress, cache: Cache) -> MadeField | None:

@@ -102,16 +102,18 @@ py::tuple refine(const py::object& fields, const py::object& triangles, const py
 }
 
 py::array crossings(const py::object& vertices, const py::object& triangles, const py::object& among,
-                    const py::object& threads, const py::object& job) {
+                    const py::object& owners, const py::object& threads, const py::object& job) {
   const ArrayIn<double> xyz = as_points3(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const ArrayIn<Index> chosen = among.is_none() ? ArrayIn<Index>{} : as_indices(among, "among");
   const std::optional named = among.is_none() ? std::nullopt : std::optional(chosen.values);
+  const ArrayIn<Index> whose = owners.is_none() ? ArrayIn<Index>{} : as_indices(owners, "owners");
+  const std::optional owned = owners.is_none() ? std::nullopt : std::optional(whose.values);
   const Index count = as_integer(threads, "threads");
   const JobIn token(job);
   return to_rows<Index>(without_gil([&] {
     const JobStage stage(token, "Looking for triangles that pass through each other");
-    return self_crossings(points_of(xyz), triangles_of(indices), named, count, stage);
+    return self_crossings(points_of(xyz), triangles_of(indices), named, owned, count, stage);
   }));
 }
 
@@ -275,7 +277,7 @@ Raises
 InputError
     A wrong number of cells, a tolerance that is not above 0.)");
   m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::arg("among") = py::none(),
-        py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
+        py::kw_only(), py::arg("owners") = py::none(), py::arg("threads") = 0, py::arg("job") = py::none(),
         R"(Find the triangles that pass through each other.
 
 Exact for the coordinates as they are. Triangles that only touch, lie in one plane or share an edge are no such pair.
@@ -286,6 +288,8 @@ vertices : (V, 3) float array
 triangles : (T, 3) int array
 among : (n,) int array, optional
     Numbers of triangles, rising: only pairs of which one is among these.
+owners : (T,) int array, optional
+    Whose each triangle is: only pairs of different owners, which is quicker than to look at all and leave out the rest.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -298,7 +302,7 @@ Returns
 Raises
 ------
 InputError
-    A corner that is no vertex, a vertex that is not finite, an `among` that does not rise.
+    A corner that is no vertex, a vertex that is not finite, an `among` that does not rise, a wrong number of owners.
 Cancelled
     The job was cancelled.)");
 }

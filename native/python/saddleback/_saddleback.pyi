@@ -2313,6 +2313,7 @@ def self_crossings(
     triangles: ArrayLike,
     among: ArrayLike | None = None,
     *,
+    owners: ArrayLike | None = None,
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> _Indices:
@@ -2326,6 +2327,8 @@ def self_crossings(
     triangles : (T, 3) int array
     among : (n,) int array, optional
         Numbers of triangles, rising: only pairs of which one is among these.
+    owners : (T,) int array, optional
+        Whose each triangle is: only pairs of different owners, which is quicker than to look at all and leave out the rest.
     threads : int
         0: all cores. The result does not depend on it.
     job : Job, optional
@@ -2338,7 +2341,7 @@ def self_crossings(
     Raises
     ------
     InputError
-        A corner that is no vertex, a vertex that is not finite, an `among` that does not rise.
+        A corner that is no vertex, a vertex that is not finite, an `among` that does not rise, a wrong number of owners.
     Cancelled
         The job was cancelled.
     """

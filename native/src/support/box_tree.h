@@ -23,6 +23,7 @@ struct Box {
 template <class Vector>
 class BoxTree {
  public:
+  BoxTree() = default;
   /// O(n log n).
   explicit BoxTree(const std::vector<Box<Vector>>& boxes) : boxes_(boxes.size()), order_(boxes.size()) {
     if (boxes.empty()) return;
@@ -45,6 +46,16 @@ class BoxTree {
     const Index i = order_[place];
     visit_node(1, 0, static_cast<Index>(order_.size()), place + 1, boxes_[place], [&](Index j) { visit(i, j); });
   }
+
+  /// Calls visit(i, j) for every box i of this tree and j of `other` that meet: both are gone down together, so that
+  /// parts far from each other are left out at once.
+  template <class Visit>
+  void visit_both(const BoxTree& other, Visit&& visit) const {
+    if (!order_.empty() && !other.order_.empty()) visit_parts(all(), other, other.all(), visit);
+  }
+
+  /// The box about all. \pre there are boxes
+  const Box<Vector>& whole() const { return nodes_[1]; }
 
  private:
   static constexpr Index k_leaf = 4;  ///< boxes in a leaf, at most
@@ -94,6 +105,33 @@ class BoxTree {
     const Index middle = begin + (end - begin) / 2;
     visit_node(2 * node, begin, middle, first, box, visit);
     visit_node(2 * node + 1, middle, end, first, box, visit);
+  }
+
+  struct Part {
+    std::size_t node;
+    Index begin, end;
+    Index size() const { return end - begin; }
+    Part half(int side) const {
+      const Index middle = begin + size() / 2;
+      return {2 * node + side, side ? middle : begin, side ? end : middle};
+    }
+  };
+  Part all() const { return {1, 0, static_cast<Index>(order_.size())}; }
+
+  template <class Visit>
+  void visit_parts(const Part& part, const BoxTree& other, const Part& of_other, Visit&& visit) const {
+    if (!nodes_[part.node].meets(other.nodes_[of_other.node])) return;
+    if (std::max(part.size(), of_other.size()) <= k_leaf) {
+      for (Index i = part.begin; i < part.end; ++i)
+        for (Index j = of_other.begin; j < of_other.end; ++j)
+          if (boxes_[i].meets(other.boxes_[j])) visit(order_[i], other.order_[j]);
+      return;
+    }
+    for (const int side : {0, 1})
+      if (part.size() > of_other.size())
+        visit_parts(part.half(side), other, of_other, visit);
+      else
+        visit_parts(part, other, of_other.half(side), visit);
   }
 
   std::vector<Box<Vector>> boxes_, nodes_;  ///< boxes in the tree's order

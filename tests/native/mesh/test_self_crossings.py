@@ -57,6 +57,10 @@ def test_as_fractions_tell(grain: int) -> None:
     among = np.flatnonzero(random.random(len(triangles)) < 0.2)
     some = [pair for pair in expected if np.isin(pair, among).any()]
     assert [tuple(pair) for pair in sb.self_crossings(vertices, triangles, among).tolist()] == some
+    owners = random.integers(-3, 4, len(triangles))
+    for named, pairs in ((None, expected), (among, some)):
+        found = sb.self_crossings(vertices, triangles, named, owners=owners)
+        assert [tuple(pair) for pair in found.tolist()] == [(i, j) for i, j in pairs if owners[i] != owners[j]]
 
 
 def test_a_needle_that_pricks_its_neighbor_by_a_millionth() -> None:
@@ -81,6 +85,11 @@ def test_closed_surfaces_have_none_and_two_balls_a_ring_of_them() -> None:
     assert sb.self_crossings(both, twice, threads=8).tobytes() == found.tobytes()
     assert sb.self_crossings(both, twice, np.unique(found[:, 1]), threads=8).tobytes() == found.tobytes()
     assert sb.self_crossings(both, twice, []).shape == (0, 2)
+    whose = np.arange(len(twice)) // 100
+    for threads in (1, 8):
+        owned = sb.self_crossings(both, twice, owners=whose, threads=threads)
+        assert owned.tobytes() == found.tobytes()  # no patch of a ball passes through itself
+    assert sb.self_crossings(both, twice, owners=np.zeros(len(twice), int)).shape == (0, 2)
     order = np.random.default_rng(1).permutation(len(twice))
     again = np.sort(order[sb.self_crossings(both, twice[order])], axis=1)
     assert {tuple(pair) for pair in again.tolist()} == {tuple(pair) for pair in found.tolist()}
@@ -95,6 +104,8 @@ def test_nothing_and_bad_input() -> None:
     for among in ([1, 0], [0, 0], [-1], [2]):
         with pytest.raises(sb.InputError, match=r"among: entry .* name each of 2 triangles once, in order"):
             sb.self_crossings(np.eye(3), [[0, 1, 2], [0, 2, 1]], among)
+    with pytest.raises(sb.InputError, match="owners: 1 of them; name that of each of 2 triangles"):
+        sb.self_crossings(np.eye(3), [[0, 1, 2], [0, 2, 1]], owners=[0])
     job = sb.Job()
     job.cancel()
     with pytest.raises(sb.Cancelled):

@@ -19,21 +19,85 @@ from .shape_templates import SIDES, ShapeTemplate, Solid
 THICKNESS = 0.12  # of a shape's radius: of raised pieces of surface, where none is given
 
 
+@dataclass(frozen=True)
+class Bent:
+    """Solids bent onto the surface, as the library's BentCopies, but vertices of a copy may lie anywhere among all."""
+
+    vertices: Reals
+    faces: Indices
+    barycentric: Reals
+    begins: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    triangles: Indices
+    triangle_copy: Indices
+    triangle_source: Indices
+    weights: tuple[Reals, ...]  # of all that were bent, one time after the other
+    row: Indices  # of a triangle among those
+
+    @staticmethod
+    def of(copies: Any) -> Bent:
+        """What the library bent."""
+        return Bent(
+            copies.vertices, copies.surface.faces, copies.surface.barycentric, copies.begins[:-1], copies.begins[1:],
+            copies.triangles, copies.triangle_copy, copies.triangle_source, (copies.weights,),
+            np.arange(len(copies.triangles), dtype=np.int32),
+        )  # fmt: skip
+
+    def weights_of(self, chosen: NDArray[np.int64]) -> Reals:
+        """Where the corners of some triangles lie in their sources. All of them are too many to be moved about."""
+        found, row, first = np.empty((len(chosen), 3, 3)), self.row[chosen], 0
+        for part in self.weights:
+            mine = (row >= first) & (row < first + len(part))
+            found[mine] = part[row[mine] - first]
+            first += len(part)
+        return found
+
+    def with_again(self, again: Sequence[tuple[Bent, NDArray[np.int64]]]) -> Bent:
+        """With copies that were bent `again`, and whose those are, in the place of what they were before."""
+        tries = [(self, np.arange(len(self.begins))), *again]
+        last, begins, ends = (np.zeros(len(self.begins), np.int64) for _ in range(3))
+        for number, (_, chosen) in enumerate(tries):
+            last[chosen] = number
+        kept, triangles, copies, vertex, row = [], [], [], 0, 0
+        for number, (bent, chosen) in enumerate(tries):
+            begins[chosen], ends[chosen] = bent.begins + vertex, bent.ends + vertex
+            is_last = last[chosen][bent.triangle_copy] == number
+            triangles.append(bent.triangles[is_last] + np.int32(vertex))
+            copies.append(chosen[bent.triangle_copy[is_last]])
+            kept.append(np.flatnonzero(is_last) + row)
+            vertex, row = vertex + len(bent.vertices), row + len(bent.triangles)
+        order = np.argsort(np.concatenate(copies), kind="stable")
+        rows = np.concatenate(kept)[order]
+
+        def joined(name: str) -> Any:
+            return np.concatenate([getattr(bent, name) for bent, _ in tries])
+
+        return Bent(
+            joined("vertices"), joined("faces"), joined("barycentric"), begins, ends, np.concatenate(triangles)[order],
+            np.concatenate(copies).astype(np.int32)[order], joined("triangle_source")[rows],
+            tuple(part for bent, _ in tries for part in bent.weights), rows.astype(np.int32),
+        )  # fmt: skip
+
+
 def bent_copies(
     mesh: Any, mapped: Any, templates: Sequence[ShapeTemplate], settings: DistributeSettings, threads: int,
-    progress: Progress, without: Sequence[int] = (),
+    progress: Progress, without: Sequence[int] = (), bent: Bent | None = None,
 ) -> BentCopies:  # fmt: skip
-    """One copy for each placement that could be laid, those with a solid first; none of those `without`."""
+    """One copy for each placement that could be laid, those with a solid first; none of those `without`.
+
+    `bent`: the copies of all solids, where they are there already.
+    """
     shapes, scales, mirrored = (
         mapped.placements.shape.tolist(), mapped.placements.scale, mapped.placements.mirrored
     )  # fmt: skip
     pieces = []
-    with progress.stage(0.95, "bending shapes onto the surface") as job:
-        solids = [triangulated(template.solid) for template in templates]
-        bent = mapped.bend(solids, settings.fit, threads=threads, job=job)
+    if bent is None:
+        with progress.stage(0.95, "bending shapes onto the surface") as job:
+            solids = [triangulated(template.solid) for template in templates]
+            bent = Bent.of(mapped.bend(solids, settings.fit, threads=threads, job=job))
     for shape, template in enumerate(templates):
         if template.solid is not None:
-            copies = np.flatnonzero((mapped.placements.shape == shape) & (np.diff(bent.begins) > 0))
+            copies = np.flatnonzero((mapped.placements.shape == shape) & (bent.ends > bent.begins))
             pieces.append(_of_solid(bent, mapped, template.solid, shape, np.setdiff1d(copies, without)))
     for number, shape in enumerate(shapes):
         if number % 32 == 0:
@@ -91,11 +155,11 @@ def _row(parts: list[Any], dtype: type[np.generic]) -> Any:
     return (np.concatenate(parts) if parts else np.empty(0)).astype(dtype)
 
 
-def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int, copies: NDArray[np.int64]) -> _Piece:
+def _of_solid(bent: Bent, mapped: Any, solid: Solid, shape: int, copies: NDArray[np.int64]) -> _Piece:
     """Copies of a class: polygons as they were where nothing of them was divided or folded, else triangles."""
     parted = solid.parted()
     polygon = (np.searchsorted(solid.offsets, parted[:, 0], "right") - 1).astype(np.int32)
-    begins, ends = bent.begins[copies], bent.begins[copies + 1]
+    begins, ends = bent.begins[copies], bent.ends[copies]
     used = np.concatenate([np.arange(b, e) for b, e in zip(begins, ends, strict=True)] or [np.empty(0, np.int64)])
     order = np.zeros(len(bent.vertices), np.int64)  # of a vertex among those used
     order[used] = np.arange(len(used))
@@ -120,13 +184,13 @@ def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int, copies: NDArray[
     kept_corners = order[np.repeat(begins[whole_row], sizes) + solid.corners[kept]]
     cut = mine[~is_whole[owner, polygon[source]]]
     cut_source = bent.triangle_source[cut]
-    cut_uv = np.einsum("tck,tkj->tcj", bent.weights[cut], solid.uv[parted[cut_source]]).reshape(-1, 2)
+    cut_uv = np.einsum("tck,tkj->tcj", bent.weights_of(cut), solid.uv[parted[cut_source]]).reshape(-1, 2)
     of_cut = polygon[cut_source]
     all_sizes = np.concatenate([sizes, np.full(len(cut), 3)])
     return _Piece(
         vertices=bent.vertices[used],
-        faces=bent.surface.faces[used],
-        barycentric=bent.surface.barycentric[used],
+        faces=bent.faces[used],
+        barycentric=bent.barycentric[used],
         corners=np.concatenate([kept_corners, order[bent.triangles[cut].ravel()]]).astype(np.int32),
         offsets=np.concatenate([[0], np.cumsum(all_sizes)]).astype(np.int32),
         uv=np.concatenate([solid.uv[kept], cut_uv]),
@@ -142,7 +206,7 @@ def _is_folded(corners: Reals, owner: NDArray[np.int64], source: Indices, polygo
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     row = np.zeros((owner.max(initial=-1) + 1) * len(polygon), np.int64)
     row[owner * len(polygon) + source] = np.arange(len(source))
-    first = row[owner * len(polygon) + np.searchsorted(polygon, polygon[source])]
+    first = row[owner * len(polygon) + np.searchsorted(polygon, polygon)[source]]
     found: NDArray[np.bool_] = np.einsum("ij,ij->i", normals, normals[first]) <= 0
     return found
 

@@ -19,7 +19,7 @@ from .. import native
 from ..results import Indices, Reals
 from ..solids.crossings import find_crossings
 from ..surfaces.quaternions import quaternions_of, turned
-from .bent_copies import border, triangulated
+from .bent_copies import Bent, border, triangulated
 from .shape_templates import Parts, ShapeTemplate, Solid
 
 
@@ -99,9 +99,10 @@ class Order:
         )  # fmt: skip
         return sb.map_shapes(self.mesh, self.shapes, scaled, self.field, threads=self.threads, job=job)
 
-    def bend(self, mapped: Any, job: Any) -> Any:
+    def bend(self, mapped: Any, job: Any) -> Bent:
         """Bends the solids of what was mapped."""
-        return mapped.bend([triangulated(solid) for solid in self.solids], self.fit, threads=self.threads, job=job)
+        solids = [triangulated(solid) for solid in self.solids]
+        return Bent.of(mapped.bend(solids, self.fit, threads=self.threads, job=job))
 
 
 @dataclass(frozen=True)
@@ -111,6 +112,7 @@ class Whole:
     mapped: Any
     smaller: int = 0
     left_out: tuple[int, ...] = ()
+    bent: Bent | None = None  # where they had to be bent to be cleared
 
 
 def map_whole(order: Order, overlap: float, clears: bool, job: Any) -> Whole:
@@ -129,27 +131,27 @@ def map_whole(order: Order, overlap: float, clears: bool, job: Any) -> Whole:
         factor[failed] = np.maximum(SHRINK * factor[failed], least)
     if not clears:
         return Whole(mapped)
-    clear = _cleared(order, mapped, factor, job)
+    clear, bent = _cleared(order, mapped, factor, job)
     is_smaller, is_out = clear < factor, clear < LEAST
     if is_smaller.any():
         mapped = order.map(clear, everything, job)
-    return Whole(mapped, int(np.count_nonzero(is_smaller & ~is_out)), tuple(np.flatnonzero(is_out).tolist()))
+    return Whole(mapped, int(np.count_nonzero(is_smaller & ~is_out)), tuple(np.flatnonzero(is_out).tolist()), bent)
 
 
-def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
-    """(n,) factors at which no copy passes through another; below LEAST it is to be left out.
+def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> tuple[Reals, Bent]:
+    """(n,) factors at which no copy passes through another, below LEAST it is to be left out; and the copies.
 
     Of each two that do, the one that meets more others, or else the larger, is made smaller. O(T log T) for all T
     triangles once, then for those of the copies that change and of their neighbors.
     """
     factor = factor.copy()
-    bent = order.bend(mapped, job)
-    points, triangles, owner = bent.vertices, bent.triangles, bent.triangle_copy
+    first, again = order.bend(mapped, job), []
+    points, triangles, owner = first.vertices, first.triangles, first.triangle_copy
     middle = np.asarray(order.placements.center.positions(order.mesh))
-    sizes = np.diff(bent.begins)
+    sizes = first.ends - first.begins
     off = points - np.repeat(middle, sizes, axis=0)
     reach, laid = np.zeros(len(factor)), sizes > 0
-    reach[laid] = np.sqrt(np.maximum.reduceat(np.einsum("ij,ij->i", off, off), bent.begins[:-1][laid]))
+    reach[laid] = np.sqrt(np.maximum.reduceat(np.einsum("ij,ij->i", off, off), first.begins[laid]))
     pairs = _pairs(points, triangles, owner, None, job)
     times = np.zeros(len(factor))
     while len(pairs):
@@ -159,20 +161,23 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> Reals:
         last = LEAST / CLEARER  # none is left out that was not tried at this
         factor[chosen] = np.where(factor[chosen] > last, np.maximum(smaller, last), smaller)
         pairs = pairs[~np.isin(pairs, chosen).any(axis=1)]
-        is_kept = ~np.isin(owner, chosen)
-        triangles, owner = triangles[is_kept], owner[is_kept]
+        is_kept = np.ones(len(factor), bool)
+        is_kept[chosen] = False
+        triangles, owner = triangles[is_kept[owner]], owner[is_kept[owner]]
         chosen = chosen[factor[chosen] >= LEAST]
         bent = order.bend(order.map(factor, chosen, job), job)
+        again.append((bent, chosen))
         near = _near(middle, reach, chosen)[owner]
         around, fresh = triangles[near], bent.triangles + np.int32(len(points))
         points = np.concatenate([points, bent.vertices])
+        whose = chosen.astype(np.int32)[bent.triangle_copy]
         found = _pairs(
-            points, np.concatenate([around, fresh]), np.concatenate([owner[near], chosen[bent.triangle_copy]]),
+            points, np.concatenate([around, fresh]), np.concatenate([owner[near], whose]),
             np.arange(len(around), len(around) + len(fresh), dtype=np.int32), job,
         )  # fmt: skip
         pairs = np.concatenate([pairs, found])
-        triangles, owner = np.concatenate([triangles, fresh]), np.concatenate([owner, chosen[bent.triangle_copy]])
-    return factor
+        triangles, owner = np.concatenate([triangles, fresh]), np.concatenate([owner, whose])
+    return factor, first.with_again(again) if again else first
 
 
 def _pairs(points: Reals, triangles: Indices, owner: Indices, among: Indices | None, job: Any) -> NDArray[np.int64]:
@@ -180,9 +185,8 @@ def _pairs(points: Reals, triangles: Indices, owner: Indices, among: Indices | N
 
     As they are once Blender has rounded them.
     """
-    found = find_crossings(points, triangles, among, job)
-    owners = np.sort(owner[found].astype(np.int64), axis=1)
-    pairs: NDArray[np.int64] = np.unique(owners[owners[:, 0] != owners[:, 1]], axis=0)
+    found = find_crossings(points, triangles, among, job, owner)
+    pairs: NDArray[np.int64] = np.unique(np.sort(owner[found].astype(np.int64), axis=1), axis=0)
     return pairs
 
 

@@ -15,11 +15,15 @@ from ..results import Indices, Reals
 ROUNDING = 4.0 * float(np.finfo(np.float32).eps)
 
 
-def find_crossings(vertices: Reals, triangles: Indices, among: Indices | None = None, job: Any = None) -> Indices:
+def find_crossings(
+    vertices: Reals, triangles: Indices, among: Indices | None = None, job: Any = None, owners: Indices | None = None
+) -> Indices:
     """Pairs (k, 2) of triangles that pass through each other, neighbors along an edge left out; only those of which one
-    is `among` the n named, if given. Coordinates are rounded to single precision. O(m log n).
+    is `among` the n named, and of different `owners` (m,), if given. Coordinates are rounded to single precision.
+    O(m log n).
     """
-    found: Indices = native.load().self_crossings(vertices.astype(np.float32), triangles, among, job=job)
+    rounded = vertices.astype(np.float32)
+    found: Indices = native.load().self_crossings(rounded, triangles, among, owners=owners, job=job)
     return found
 
 

@@ -97,11 +97,12 @@ BoundaryRefinement refine_to_cell_boundary(std::span<const double> fields, Index
 
 /// Pairs of triangles that pass through each other, the smaller number first, in order: an edge of one goes from one
 /// side of the other to its other side. Exact for coordinates as they are; triangles that only touch, lie in one plane
-/// or share an edge are no such pair. Only pairs of which one is `among` these, if given. The same for any number of
-/// threads (0: all cores). \throw Cancelled, InputError for a vertex that is not finite, and for an `among` that does
-/// not rise. About O(T log n), n of them `among`.
+/// or share an edge are no such pair. Only pairs of which one is `among` these, if given, and of different `owners`
+/// (T,), if given. The same for any number of threads (0: all cores). \throw Cancelled, InputError for a vertex that is
+/// not finite, an `among` that does not rise, and a wrong number of owners. About O(T log n), n of them `among`.
 std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                                 std::optional<std::span<const Index>> among, int threads,
+                                                 std::optional<std::span<const Index>> among,
+                                                 std::optional<std::span<const Index>> owners, int threads,
                                                  const JobStage& stage);
 
 }  // namespace saddleback

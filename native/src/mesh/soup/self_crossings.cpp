@@ -100,20 +100,49 @@ std::vector<Index> chosen_of(std::optional<std::span<const Index>> among, Index 
   return {among->begin(), among->end()};
 }
 
+/// Triangles that are not held against each other: those of one owner, or all where nobody says whose they are.
+struct Group {
+  std::vector<Index> triangles;
+  BoxTree<Vec3> tree;
+};
+
+std::vector<Group> groups_of(std::vector<Index> chosen, std::optional<std::span<const Index>> owners,
+                             const Crossings& crossings, int threads, const JobStage& stage) {
+  const auto owner = [&](Index i) { return owners ? (*owners)[i] : 0; };
+  std::ranges::stable_sort(chosen, {}, owner);
+  std::vector<Group> groups;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (k == 0 || owner(chosen[k]) != owner(chosen[k - 1])) groups.emplace_back();
+    groups.back().triangles.push_back(chosen[k]);
+  }
+  parallel_for(static_cast<Index>(groups.size()), threads, 1, [&](Index g, int) {
+    stage.check();
+    std::vector<Box<Vec3>> boxes;
+    for (const Index i : groups[g].triangles) boxes.push_back(crossings.box(i));
+    groups[g].tree = BoxTree<Vec3>(boxes);
+  });
+  return groups;
+}
+
 }  // namespace
 
 std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                                 std::optional<std::span<const Index>> among, int threads,
+                                                 std::optional<std::span<const Index>> among,
+                                                 std::optional<std::span<const Index>> owners, int threads,
                                                  const JobStage& stage) {
   const auto count = static_cast<Index>(triangles.size());
   check_corners(triangles, static_cast<Index>(vertices.size()));
   for (std::size_t v = 0; v < vertices.size(); ++v)
     if (!vertices[v].allFinite()) throw InputError(message("vertices: vertex ", v, " is not finite"));
+  if (owners && owners->size() != triangles.size())
+    throw InputError(message("owners: ", owners->size(), " of them; name that of each of ", count, " triangles"));
   const std::vector<Index> chosen = chosen_of(among, count);
   const Crossings crossings(vertices, triangles);
-  std::vector<Box<Vec3>> boxes(chosen.size());
-  for (std::size_t k = 0; k < chosen.size(); ++k) boxes[k] = crossings.box(chosen[k]);
+  const std::vector<Group> groups = groups_of(chosen, owners, crossings, threads, stage);
+  std::vector<Box<Vec3>> boxes;
+  for (const Group& group : groups) boxes.push_back(group.tree.whole());
   const BoxTree<Vec3> tree(boxes);
+
   struct alignas(k_apart) Worker {
     std::vector<std::array<Index, 2>> found;
   };
@@ -121,15 +150,31 @@ std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices,
   const auto look = [&](Index a, Index b, int thread) {
     if (crossings.cross(a, b)) workers[thread].found.push_back({std::min(a, b), std::max(a, b)});
   };
-  parallel_for(static_cast<Index>(chosen.size()), threads, k_at_once, [&](Index place, int thread) {
-    if (place % k_at_once == 0) stage.check();
-    tree.visit_later(place, [&](Index i, Index j) { look(chosen[i], chosen[j], thread); });
-  });
+  if (owners) {
+    parallel_for(static_cast<Index>(groups.size()), threads, 1, [&](Index place, int thread) {
+      tree.visit_later(place, [&](Index g, Index h) {
+        stage.check();
+        groups[g].tree.visit_both(
+            groups[h].tree, [&](Index i, Index j) { look(groups[g].triangles[i], groups[h].triangles[j], thread); });
+      });
+    });
+  } else if (!groups.empty()) {
+    parallel_for(static_cast<Index>(chosen.size()), threads, k_at_once, [&](Index place, int thread) {
+      if (place % k_at_once == 0) stage.check();
+      groups[0].tree.visit_later(place, [&](Index i, Index j) { look(chosen[i], chosen[j], thread); });
+    });
+  }
   std::vector<bool> is_chosen(count);
   for (const Index i : chosen) is_chosen[i] = true;
-  parallel_for(count, threads, k_at_once, [&](Index other, int thread) {
+  parallel_for(among ? count : 0, threads, k_at_once, [&](Index other, int thread) {
     if (other % k_at_once == 0) stage.check();
-    if (!is_chosen[other]) tree.visit(crossings.box(other), [&](Index i) { look(chosen[i], other, thread); });
+    if (is_chosen[other]) return;
+    const Box<Vec3> box = crossings.box(other);
+    tree.visit(box, [&](Index g) {
+      const std::vector<Index>& own = groups[g].triangles;
+      if (owners && (*owners)[own[0]] == (*owners)[other]) return;
+      groups[g].tree.visit(box, [&](Index i) { look(own[i], other, thread); });
+    });
   });
   std::vector<std::array<Index, 2>> all;
   for (const Worker& worker : workers) all.insert(all.end(), worker.found.begin(), worker.found.end());
