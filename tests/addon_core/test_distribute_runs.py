@@ -2,6 +2,7 @@
 """Shapes on a surface as the add-on asks for them: counts, sizes, fields, what is made of the placements."""
 
 import re
+import time
 from dataclasses import fields, replace
 from types import SimpleNamespace
 
@@ -261,6 +262,18 @@ def test_a_surface_in_hundreds_of_pieces_takes_what_fits_them():
     loose = vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
     result = run(preset("STUDS"), arrays=loose, count=40, packing=1.0, make_bent=False)
     assert len(result.placed.shape) >= 38
+
+
+def test_a_surface_that_bends_too_much_for_its_area_takes_smaller_shapes_soon():
+    """White noise: nowhere do shapes go that are as large as its area has room for, and looking for room takes long."""
+    vertices, triangles = meshes.grid(60, 60)
+    vertices = 2.0 * vertices + [0.0, 0.0, 0.3] * np.random.default_rng(0).random((len(vertices), 1))
+    began = time.process_time()
+    result = run(preset("STUDS"), arrays=(vertices, triangles), count=400, packing=1.0, make_bent=False)
+    assert time.process_time() - began < 5.0  # 43 when shapes were too large at first
+    assert abs(len(result.placed.shape) - 400) <= 20 and not result.warnings
+    middle = vertices.mean(axis=0)[:2]
+    assert np.bincount((result.placed.points[:, :2] > middle) @ [1, 2], minlength=4).min() > 70
 
 
 def test_a_gap_makes_so_many_smaller():

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from operator import itemgetter
 from typing import Any
 
@@ -38,7 +39,19 @@ from .shapes.bent_copies import bent_copies
 from .shapes.cut_shapes import cut_shapes
 from .shapes.overlapping import ROUND, THIN, Order, Whole, footprints, map_whole, tilted, tilted_frames
 from .shapes.shape_classes import class_densities, class_fields, class_sizes, kept_placements
-from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, painted_share, room, size_of, sizes
+from .shapes.shape_sizes import (
+    MOST_ROOM,
+    ROUGH,
+    Laid,
+    Placed,
+    crowding,
+    fitted_to_count,
+    laid_out,
+    painted_share,
+    room,
+    size_of,
+    sizes,
+)
 from .shapes.shape_templates import ShapeTemplate, sized, uv_of_classes
 from .surfaces.local_frames import anchored
 
@@ -165,19 +178,19 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     loops = [loop for outlines in parts for part in outlines for loop in part]
     shared = content_of([sorted(options.items(), key=itemgetter(0)), field_key, loops, request.kept])
 
-    def place(size: float, count: int | None) -> Placed:
+    def place(size: float, count: int | None, **more: Any) -> Placed:
         shared_size = sizes(mesh, size, density if settings.size_by_density else None)
         wanted = class_sizes(request.classes, surface, shared_size)
         least = min(float(np.min(own)) for own in _listed(wanted))
         if room(mesh.area, least, options["size_range"][0], shapes) > MOST_ROOM:
             raise BadInputError(f"'{surface.name}': {too_small(size)}")
-        key = (surface.key, content_of([shared, wanted, count]))
+        key = (surface.key, content_of([shared, wanted, count, *more]))
 
         def lay() -> Any:
             with progress.stage(0.75, "laying shapes on the surface") as job:
                 return sb.distribute(
                     mesh, shapes, count, field=fields, size=wanted, around=around, threads=request.threads, job=job,
-                    **options,
+                    **options, **more,
                 )  # fmt: skip
 
         try:
@@ -197,7 +210,16 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         elif "density" in options and not settings.size_by_density:
             free /= max(crowding(mesh, own) for own in _listed(options["density"]))
         first = size_of(settings.count, settings.packing if fills else 0.0, fills, free, shapes, templates)
-        placed = fitted_to_count(place, first, settings.count, fills, settings.maximal)
+        size = laid_out(mesh, shapes, first)
+        if size < first:
+            progress.note("The surface bends too much for shapes as large as the count has room for")
+        lay = place
+        if size < ROUGH * first and fills and not settings.maximal:
+            # A place for each: to look for room all over a surface that has hardly any takes minutes.
+            even = np.zeros(len(mesh.vertices))
+            even[mesh.triangles if forbidden is None else mesh.triangles[~forbidden]] = 1.0
+            lay = partial(place, density=even)
+        placed = fitted_to_count(lay, size, settings.count, fills, settings.maximal)
     warnings = () if field is None else field.notes
     laid = Laid(mesh, templates, shapes, placed.size, placed.result, placed.key, fills and not settings.size, warnings)
     if not len(placed.result.placements):

@@ -28,6 +28,9 @@ namespace {
 
 /// A round that lays less than this share of all is the last one, unless everything is wanted.
 constexpr double k_tired = 0.02;
+/// Nor is room searched for, unless everything is wanted, where more than this share of the random candidates that were
+/// turned away fell where shapes cannot be laid.
+constexpr double k_mostly_odd = 0.4;
 /// Drops of each try_batch on the area of a copy; a sweep needs many to choose from. The last ones are for when no
 /// search follows.
 constexpr std::array<double, 10> k_batches{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
@@ -331,17 +334,22 @@ void MaximalSampling::collect_candidates(Index number, const Look& look, std::ve
   }
 }
 
-/// Finds the rims of places where shapes cannot be laid less finely where many candidates fell on such places.
-void MaximalSampling::find_least_stuck() {
-  constexpr double k_fine = 4, k_coarse = 8, k_much = 0.02;
+/// Returns which share of the candidates turned away fell where shapes cannot be laid, alone as they are.
+double MaximalSampling::odd_share() const {
   const auto rejected = insertion_->rejections();
   const auto number = [](Outcome outcome) {
     return static_cast<std::size_t>(outcome) - static_cast<std::size_t>(Outcome::collision);
   };
   const std::int64_t odd = rejected[number(Outcome::fold)] + rejected[number(Outcome::stretched)];
   const std::int64_t all = std::accumulate(rejected.begin(), rejected.end(), std::int64_t{0});
+  return odd > 0 ? static_cast<double>(odd) / static_cast<double>(all) : 0;
+}
+
+/// Finds the rims of places where shapes cannot be laid less finely where many candidates fell on such places.
+void MaximalSampling::find_least_stuck() {
+  constexpr double k_fine = 4, k_coarse = 8, k_much = 0.02;
   const double least = options_->tolerance * (rules_->smallest_radius() + 0.5 * options_->gap);
-  least_stuck_ = least * (static_cast<double>(odd) > k_much * static_cast<double>(all) ? k_coarse : k_fine);
+  least_stuck_ = least * (odd_share() > k_much ? k_coarse : k_fine);
 }
 
 /// The face and those about it.
@@ -443,6 +451,8 @@ DistributionStop MaximalSampling::run(const JobStage& stage) {
   constexpr double k_random_share = 0.4;  // of the work, where cells are searched after it
   const DistributionStop random_stop = sample_at_random(stage.part(0, searches() ? k_random_share : 1));
   if (random_stop == DistributionStop::counts || !searches() || insertion_->is_hopeless()) return random_stop;
+  // Where the surface bends too much nearly everywhere cells are split and split again, for next to no copies.
+  if (!options_->maximal && odd_share() > k_mostly_odd) return random_stop;
   find_least_stuck();
   order_faces();
   const auto share = [&] { return k_random_share + (1 - k_random_share) * next_face_ / mesh_->face_count(); };

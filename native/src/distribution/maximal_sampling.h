@@ -82,6 +82,7 @@ class MaximalSampling {
     const double radius = rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
     return options_->tolerance * (radius + 0.5 * options_->gap);
   }
+  double odd_share() const;
   void find_least_stuck();
   void lose(const Cell& cell);
 

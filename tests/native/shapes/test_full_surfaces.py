@@ -241,6 +241,14 @@ def test_a_gap_that_hardly_anything_fits_with_ends_soon(more) -> None:
     assert time.process_time() - begin < 5
 
 
+def test_where_hardly_any_can_be_laid_room_is_not_looked_for_in_smaller_and_smaller_cells() -> None:
+    vertices, triangles = meshes.grid(60, 60)
+    vertices = 2.0 * vertices + [0.0, 0.0, 0.3] * np.random.default_rng(0).random((len(vertices), 1))
+    result = sb.distribute(sb.Mesh(vertices, triangles), DISK, [500], size=0.1, mode="packed")
+    assert result.stop_reason == "tired" and 0 < len(result) < 50
+    assert sum(result.rejections.values()) < 150_000  # 900,000 when cells were split for them
+
+
 def test_a_surface_that_folds_is_filled_quickly() -> None:
     """A rough spot took a minute: thousands of vertices a try, and tries a hundred times too many."""
     vertices, triangles = meshes.grid(120, 120)

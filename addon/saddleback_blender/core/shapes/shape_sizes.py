@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import native
 from ..results import Reals
 from .shape_templates import ShapeTemplate
 
@@ -23,6 +24,11 @@ STEADY = 0.5  # no trial is smaller than the one before by more, lest shapes bec
 MOST_ROOM = 2_000_000  # shapes that may fit: the search looks at room for all of them, however few are wanted
 SHRINK = 0.97  # more than what the count asks for, where shapes do not find room: by this once, twice, ...
 MOST_OVER = 1.3  # of the count, laid to see how many fit
+PROBES = 120  # places all over the surface where shapes are tried alone, before all are laid: that takes milliseconds
+LEAST_LAID = 0.25  # share of them where the surface must not bend too much: where it is less, trials take minutes
+FINER = 0.9  # from one size that is probed to the next
+LEAST_PROBED = 0.002  # of the size that was wanted
+ROUGH = 0.6  # of that size: where shapes have to be smaller, so many do not fill the surface
 HIGH = 0.98  # share of the vertices below a density that counts as high
 MOST_GROWTH = 4.0  # of a size by the density, up or down
 
@@ -85,6 +91,21 @@ def fitted_to_count(
         size *= max(STEADY, (found / count) ** (1.0 / power) * (1.0 if fills else SHRINK ** (turn + 1)))
     assert best is not None
     return best
+
+
+def laid_out(mesh: Any, shapes: Sequence[Any], first: float) -> float:
+    """The first size, or the largest tried below it at which enough of the surface bends little enough for shapes."""
+    sb = native.load()
+    turns = np.arange(PROBES)
+    center = sb.sample(mesh, PROBES)
+    size = first
+    while True:
+        angles, scales, mirrored = turns.astype(np.float64), np.full(PROBES, size), np.zeros(PROBES, bool)
+        probes = sb.Placements((turns % len(shapes)).astype(np.int32), center, angles, scales, mirrored)
+        odd = [why for why in sb.map_shapes(mesh, shapes, probes).failures.values() if why != "boundary"]
+        if len(odd) <= (1.0 - LEAST_LAID) * PROBES or size < LEAST_PROBED * first:
+            return size
+        size *= FINER
 
 
 def sizes(mesh: Any, size: float, density: Reals | None) -> float | Reals:
