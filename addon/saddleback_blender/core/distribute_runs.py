@@ -41,6 +41,7 @@ from .shapes.overlapping import ROUND, THIN, Order, Whole, footprints, map_whole
 from .shapes.shape_classes import class_densities, class_fields, class_sizes, kept_placements
 from .shapes.shape_sizes import (
     MOST_ROOM,
+    PLACES_EACH,
     ROUGH,
     Laid,
     Placed,
@@ -178,7 +179,8 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     loops = [loop for outlines in parts for part in outlines for loop in part]
     shared = content_of([sorted(options.items(), key=itemgetter(0)), field_key, loops, request.kept])
 
-    def place(size: float, count: int | None, **more: Any) -> Placed:
+    def place(size: float, most: int | None, each: int = 1, **more: Any) -> Placed:
+        count = most and each * most
         shared_size = sizes(mesh, size, density if settings.size_by_density else None)
         wanted = class_sizes(request.classes, surface, shared_size)
         least = min(float(np.min(own)) for own in _listed(wanted))
@@ -215,10 +217,10 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
             progress.note("The surface bends too much for shapes as large as the count has room for")
         lay = place
         if size < ROUGH * first and fills and not settings.maximal:
-            # A place for each: to look for room all over a surface that has hardly any takes minutes.
+            # Places all over, of which enough do: to look for more room where there is hardly any takes minutes.
             even = np.zeros(len(mesh.vertices))
             even[mesh.triangles if forbidden is None else mesh.triangles[~forbidden]] = 1.0
-            lay = partial(place, density=even)
+            lay = partial(place, each=PLACES_EACH, density=even)
         placed = fitted_to_count(lay, size, settings.count, fills, settings.maximal)
     warnings = () if field is None else field.notes
     laid = Laid(mesh, templates, shapes, placed.size, placed.result, placed.key, fills and not settings.size, warnings)

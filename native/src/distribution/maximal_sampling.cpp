@@ -28,8 +28,8 @@ namespace {
 
 /// A round that lays less than this share of all is the last one, unless everything is wanted.
 constexpr double k_tired = 0.02;
-/// Nor is room searched for, unless everything is wanted, where more than this share of the random candidates that were
-/// turned away fell where shapes cannot be laid.
+/// The share of the random candidates turned away that fell where shapes cannot be laid: beyond it no room is searched
+/// for, unless everything is wanted.
 constexpr double k_mostly_odd = 0.4;
 /// Drops of each try_batch on the area of a copy; a sweep needs many to choose from. The last ones are for when no
 /// search follows.

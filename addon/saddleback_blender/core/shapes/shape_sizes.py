@@ -29,6 +29,7 @@ LEAST_LAID = 0.25  # share of them where the surface must not bend too much: whe
 FINER = 0.9  # from one size that is probed to the next
 LEAST_PROBED = 0.002  # of the size that was wanted
 ROUGH = 0.6  # of that size: where shapes have to be smaller, so many do not fill the surface
+PLACES_EACH = 2  # tried for a shape there: more make shapes larger, by little, and uneven
 HIGH = 0.98  # share of the vertices below a density that counts as high
 MOST_GROWTH = 4.0  # of a size by the density, up or down
 
