@@ -46,17 +46,6 @@ std::vector<Triangle> copy_triangles(std::span<const Index> indices) {
   return triangles;
 }
 
-std::vector<Index> twins_of(const EdgeTable& edges) {
-  std::vector<Index> twins(edges.halfedges.size(), k_none);
-  for (Index e = 0; e < edges.edge_count(); ++e) {
-    const std::span<const Index> around = edges.edge(e);
-    if (around.size() != 2) continue;
-    twins[around[0]] = around[1];
-    twins[around[1]] = around[0];
-  }
-  return twins;
-}
-
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
   hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
   return hash ^ (hash >> 29);

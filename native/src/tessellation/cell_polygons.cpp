@@ -51,11 +51,7 @@ std::vector<Index> bending_points(std::span<const Vec3> positions, std::span<con
 class PolygonMaker {
  public:
   PolygonMaker(const Mesh& mesh, PartedSurface surface, const CellPolygonOptions& options)
-      : mesh_(mesh),
-        options_(options),
-        surface_(std::move(surface)),
-        split_(surface_.split),
-        twins_(twins_of(split_.triangles)) {
+      : mesh_(mesh), options_(options), surface_(std::move(surface)), split_(surface_.split), twins_(twins_of(split_)) {
     find_lines();
     count_characteristics();
     find_chains();

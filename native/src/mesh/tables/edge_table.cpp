@@ -63,4 +63,15 @@ EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_cou
   return table;
 }
 
+std::vector<Index> twins_of(const EdgeTable& edges) {
+  std::vector<Index> twins(edges.halfedges.size(), k_none);
+  for (Index e = 0; e < edges.edge_count(); ++e) {
+    const std::span<const Index> around = edges.edge(e);
+    if (around.size() != 2) continue;
+    twins[around[0]] = around[1];
+    twins[around[1]] = around[0];
+  }
+  return twins;
+}
+
 }  // namespace saddleback

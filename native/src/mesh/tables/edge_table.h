@@ -24,6 +24,9 @@ struct EdgeTable {
 /// A bucket per smaller vertex (counting sort), each sorted by itself: O(V + F) when valences are bounded.
 EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_count);
 
+/// The other half-edge of each one's edge; k_none where the edge has not two.
+std::vector<Index> twins_of(const EdgeTable& edges);
+
 /// Returns where half-edge 3f+i starts and ends.
 inline Index halfedge_from(std::span<const Triangle> triangles, Index h) { return triangles[h / 3][h % 3]; }
 inline Index halfedge_to(std::span<const Triangle> triangles, Index h) { return triangles[h / 3][(h % 3 + 1) % 3]; }

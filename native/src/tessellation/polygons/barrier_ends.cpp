@@ -17,7 +17,7 @@ constexpr double k_little = 0.25;
 class EndCutter {
  public:
   explicit EndCutter(PartedSurface& surface)
-      : surface_(surface), triangles_(surface.split.triangles), twins_(twins_of(triangles_)) {
+      : surface_(surface), triangles_(surface.split.triangles), twins_(twins_of(surface.split)) {
     const auto count = surface.split.vertices.size();
     around_.resize(count);
     for (Index h = 0; h < static_cast<Index>(twins_.size()); ++h) {

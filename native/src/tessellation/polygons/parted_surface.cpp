@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "mesh/tables/edge_key.h"
+#include "mesh/tables/edge_table.h"
 #include "tessellation/polygons/barrier_ends.h"
 
 namespace saddleback {
@@ -68,7 +69,7 @@ class Seam {
   }
 
   void follow_barriers() {
-    const std::vector<Index> twins = twins_of(split_.triangles);
+    const std::vector<Index> twins = twins_of(split_);
     std::vector<Index> onward(node_.size(), k_none);  // along the boundary, from vertex to vertex
     for (Index h = 0; h < static_cast<Index>(twins.size()); ++h)
       if (twins[h] == k_none) onward[split_.triangles[h / 3][h % 3]] = split_.triangles[h / 3][Mesh::next(h) % 3];
@@ -125,7 +126,7 @@ class Seam {
   }
 
   void emit_triangles() {
-    const std::vector<Index> twins = twins_of(split_.triangles);
+    const std::vector<Index> twins = twins_of(split_);
     for (Index t = 0; t < static_cast<Index>(split_.triangles.size()); ++t) {
       const Triangle& corners = split_.triangles[t];
       std::array<Side, 3> sides;
@@ -186,23 +187,8 @@ PartedSurface parted_surface(const Mesh& whole, const BarredMesh& barred, const 
   return result;
 }
 
-std::vector<Index> twins_of(const std::vector<Triangle>& triangles) {
-  struct Side {
-    Index low, high, halfedge;
-  };
-  std::vector<Side> sides;
-  for (Index h = 0; h < static_cast<Index>(3 * triangles.size()); ++h) {
-    const auto [low, high] = std::minmax(triangles[h / 3][h % 3], triangles[h / 3][Mesh::next(h) % 3]);
-    sides.push_back({low, high, h});
-  }
-  std::ranges::sort(sides, {}, [](const Side& side) { return std::array{side.low, side.high, side.halfedge}; });
-  std::vector<Index> twins(sides.size(), k_none);
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
-    twins[sides[i].halfedge] = sides[i + 1].halfedge;
-    twins[sides[i + 1].halfedge] = sides[i].halfedge;
-  }
-  return twins;
+std::vector<Index> twins_of(const SplitMesh& split) {
+  return twins_of(build_edge_table(split.triangles, static_cast<Index>(split.vertices.size())));
 }
 
 }  // namespace saddleback

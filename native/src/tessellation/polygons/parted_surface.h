@@ -27,7 +27,7 @@ PartedSurface parted_surface(const Mesh& mesh, const GeodesicVoronoi& cells);
 /// such end.
 PartedSurface parted_surface(const Mesh& whole, const BarredMesh& barred, const GeodesicVoronoi& cells);
 
-/// Twins of the half-edges of triangles in which every edge has two at most.
-std::vector<Index> twins_of(const std::vector<Triangle>& triangles);
+/// Twins of the half-edges; k_none on the boundary.
+std::vector<Index> twins_of(const SplitMesh& split);
 
 }  // namespace saddleback
