@@ -62,6 +62,15 @@ class Screen:
         """Asks for a redraw of the sidebar."""
         self.sidebar.tag_redraw()
 
+    def leave(self):
+        """Moves the mouse into the view, and waits until Blender has left what it was over before."""
+        self.move(self.view.x + 200, self.view.y + 300)
+        for _ in range(6):
+            yield 2 * FRAME
+            with self.override(self.sidebar):
+                if not (bpy.ops.ui.copy_python_command_button.poll() or bpy.ops.ui.copy_data_path_button.poll()):
+                    return
+
     def find_button(self, command):
         """Where in the sidebar an operator's button is, by its command."""
         is_it = lambda copied: copied.startswith(command)  # noqa: E731 - asked again and again
@@ -77,8 +86,7 @@ class Screen:
         left, bottom, width = self.sidebar.x, self.sidebar.y, self.sidebar.width
         # Down the middle first; then where buttons stand side by side.
         columns = [left + across for across in (width // 2 - 20, width // 5, width * 2 // 3, width - 45)]
-        self.move(self.view.x + 200, self.view.y + 300)
-        yield 12 * FRAME  # until Blender has left what the mouse was over before
+        yield from self.leave()
         rows = range(bottom + self.sidebar.height - 8, bottom + 8, -2 * STEP)
         for x, y in [*known_places.get(name, ()), *product(columns[is_pair:], rows)]:
             if is_it((yield from self._copied(copy, x, y))):
@@ -102,8 +110,7 @@ class Screen:
     def click_until(self, place, is_done):
         """Clicks a button until something happens: the first click on a region may only wake it."""
         for _ in range(4):
-            self.move(self.view.x + 200, self.view.y + 300)
-            yield 12 * FRAME
+            yield from self.leave()
             yield from self.click(*place)
             end = time.perf_counter() + 5.0
             while time.perf_counter() < end:
