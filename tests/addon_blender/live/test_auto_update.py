@@ -49,6 +49,9 @@ def switch_on(item):
     steps()
 
 
+REST = live.REST
+
+
 @pytest.fixture(autouse=True)
 def little_rest(monkeypatch):
     """Nobody is at a stroke, whose end results wait for."""
@@ -104,7 +107,8 @@ def test_cells_of_one_dab_begin_with_those_of_the_last(item):
     assert watched.cells._cells is known
 
 
-def test_cells_follow_the_brush_where_it_was(item):
+def test_cells_follow_the_brush_where_it_was(item, monkeypatch):
+    monkeypatch.setattr(live, "REST", REST)  # in which a preview is seen
     before = cells(item)
     near = paint(item)
     seen = []
