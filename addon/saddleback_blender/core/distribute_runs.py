@@ -262,7 +262,8 @@ def _drawn(
     shapes = [native.load().Shape(*[list(part) for part in template.parts]) for template in laid.templates]
     solids = [template.solid for template in templates]
     order = Order(
-        laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.threads
+        laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.surface.place,
+        request.threads,
     )  # fmt: skip
 
     bent = None  # not kept: it is far larger than all else
