@@ -212,7 +212,8 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         elif "density" in options and not settings.size_by_density:
             free /= max(crowding(mesh, own) for own in _listed(options["density"]))
         first = size_of(settings.count, settings.packing if fills else 0.0, fills, free, shapes, templates)
-        size = laid_out(mesh, shapes, first)
+        with progress.stage(0.3, "finding out how large shapes can be") as job:
+            size = laid_out(mesh, shapes, first, request.threads, job)
         if size < first:
             progress.note("The surface bends too much for shapes as large as the count has room for")
         lay = place

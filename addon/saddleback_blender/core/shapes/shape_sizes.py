@@ -94,7 +94,7 @@ def fitted_to_count(
     return best
 
 
-def laid_out(mesh: Any, shapes: Sequence[Any], first: float) -> float:
+def laid_out(mesh: Any, shapes: Sequence[Any], first: float, threads: int, job: Any) -> float:
     """The first size, or the largest tried below it at which enough of the surface bends little enough for shapes."""
     sb = native.load()
     turns = np.arange(PROBES)
@@ -103,7 +103,8 @@ def laid_out(mesh: Any, shapes: Sequence[Any], first: float) -> float:
     while True:
         angles, scales, mirrored = turns.astype(np.float64), np.full(PROBES, size), np.zeros(PROBES, bool)
         probes = sb.Placements((turns % len(shapes)).astype(np.int32), center, angles, scales, mirrored)
-        odd = [why for why in sb.map_shapes(mesh, shapes, probes).failures.values() if why != "boundary"]
+        failures = sb.map_shapes(mesh, shapes, probes, threads=threads, job=job).failures
+        odd = [why for why in failures.values() if why != "boundary"]
         if len(odd) <= (1.0 - LEAST_LAID) * PROBES or size < LEAST_PROBED * first:
             return size
         size *= FINER
