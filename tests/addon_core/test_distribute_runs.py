@@ -332,6 +332,23 @@ def test_copies_bent_to_be_cleared_are_those_that_are_shown(arrays):
         assert np.array_equal(getattr(first, field.name), getattr(again, field.name)), field.name
 
 
+def test_whole_shapes_that_the_surface_bends_too_much_for_are_tried_smaller_alone(monkeypatch):
+    sb, sizes = native.load(), []
+    real = sb.map_shapes
+
+    def counting(mesh, shapes, placements, *rest, **options):
+        sizes.append(len(placements))
+        return real(mesh, shapes, placements, *rest, **options)
+
+    vertices, triangles = BALL
+    rough = vertices * (1.0 + 0.02 * np.random.default_rng(0).standard_normal((len(vertices), 1)))
+    monkeypatch.setattr(sb, "map_shapes", counting)
+    run(arrays=(rough, triangles), count=100, size=0.2, overlap=0.7, make_bent=False)
+    whole = max(sizes)
+    assert len(sizes) > 5 and sizes.count(whole) == 3  # the footprints, all at their full size, all as they are drawn
+    assert sizes[2:-1] == sorted(sizes[2:-1], reverse=True)
+
+
 def test_shapes_that_pass_through_others_at_any_size_are_missing_and_told():
     result = run(arrays=TWO_SHEETS, count=80, overlap=0.5, no_crossings=True)
     missing = result.class_counts.sum() - len(set(result.bent.polygon_copy))

@@ -128,12 +128,13 @@ def map_whole(order: Order, overlap: float, clears: bool, job: Any) -> Whole:
     """
     everything, least = np.arange(len(order.placements)), 1.0 - overlap
     factor = np.ones(len(everything))
-    while True:
+    mapped, tried = order.map(factor, everything, job), everything
+    failures = mapped.failures
+    while len(tried := np.array([tried[row] for row in failures if factor[tried[row]] > least], np.int64)):
+        factor[tried] = np.maximum(SHRINK * factor[tried], least)
+        failures = order.map(factor, tried, job).failures
+    if (factor < 1.0).any():
         mapped = order.map(factor, everything, job)
-        failed = np.array([number for number in mapped.failures if factor[number] > least], np.int64)
-        if not len(failed):
-            break
-        factor[failed] = np.maximum(SHRINK * factor[failed], least)
     if not clears:
         return Whole(mapped)
     clear, bent = _cleared(order, mapped, factor, job)
