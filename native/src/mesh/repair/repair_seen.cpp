@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mesh/repair/repair_steps.h"
 
@@ -16,6 +17,7 @@ namespace {
 /// where it is deeper than half of its radius. A flat sheet shows as much of both sides, and stays as it came.
 constexpr double k_decided = 1.25;
 constexpr int k_least_side = 64, k_most_side = 1024;  ///< pixels
+constexpr double k_most_drawn = 1 << 24;              ///< pixels in a view, about: many layers need no more time
 
 /// Directions of lines: through the middles of a cube's sides and edges, and through its corners.
 constexpr std::array<std::array<double, 3>, 13> k_directions{{{1, 0, 0},
@@ -99,8 +101,9 @@ class View {
     const int left = pixel(std::min({a.x(), b.x(), c.x()})), right = pixel(std::max({a.x(), b.x(), c.x()}));
     const int low = pixel(std::min({a.y(), b.y(), c.y()})), high = pixel(std::max({a.y(), b.y(), c.y()}));
     if (area == 0 || left == right || low == high) return;
-    for (int row = low; row < high; ++row)
-      for (int column = left; column < right; ++column) {
+    for (int row = low; row < high; ++row) {
+      const auto [begin, end] = columns_of({a, b, c}, row + 0.5);
+      for (int column = std::max(left, begin); column < std::min(right, end); ++column) {
         const double dx = column + 0.5 - a.x(), dy = row + 0.5 - a.y();
         const double s = (dx * q.y() - dy * q.x()) / area, t = (p.x() * dy - p.y() * dx) / area;
         if (s < 0 || t < 0 || s + t > 1) continue;
@@ -109,6 +112,23 @@ class View {
         if (depth < first_[i].depth) first_[i] = {depth, face};
         if (depth > last_[i].depth) last_[i] = {depth, face};
       }
+    }
+  }
+
+  /// Returns which columns a triangle may cover in a row, one more on both sides: of a needle's box it covers few.
+  std::pair<int, int> columns_of(const std::array<Vec3, 3>& corner, double y) const {
+    constexpr double k_level = 1e-6;  // pixels
+    double left = side_, right = 0;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 &p = corner[i], &q = corner[(i + 1) % 3];
+      const double rise = q.y() - p.y();
+      if (y < std::min(p.y(), q.y()) - k_level || y > std::max(p.y(), q.y()) + k_level) continue;
+      const bool is_level = std::abs(rise) < k_level;
+      const double at = is_level ? p.x() : p.x() + std::clamp((y - p.y()) / rise, 0.0, 1.0) * (q.x() - p.x());
+      left = std::min({left, at, is_level ? q.x() : at});
+      right = std::max({right, at, is_level ? q.x() : at});
+    }
+    return {static_cast<int>(left) - 1, static_cast<int>(right) + 2};
   }
 
   const RepairState& state_;
@@ -126,6 +146,19 @@ std::vector<std::uint8_t> open_bodies(const Sheets& sheets, const std::vector<In
   return open;
 }
 
+/// Returns how many faces lie behind a pixel, about: seen aslant they cover half of their area.
+double layers(const RepairState& state, const Sheets& sheets) {
+  Eigen::AlignedBox3d box;
+  double area = 0;
+  for (const Triangle& t : sheets.coarse) {
+    const Vec3 &a = state.positions[t[0]], &b = state.positions[t[1]], &c = state.positions[t[2]];
+    box.extend(a).extend(b).extend(c);
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  const double extent = box.diagonal().norm();
+  return extent > 0 ? 0.5 * area / (extent * extent) : 0;
+}
+
 }  // namespace
 
 void turn_seen_outward(const RepairState& state, Sheets& sheets, const std::vector<Index>& labels, Index label_count,
@@ -133,7 +166,8 @@ void turn_seen_outward(const RepairState& state, Sheets& sheets, const std::vect
   const std::vector<std::uint8_t> open = open_bodies(sheets, labels, label_count);
   if (std::find(open.begin(), open.end(), 1) == open.end()) return;
   const double detail = 4 * std::sqrt(static_cast<double>(labels.size()));
-  const int side = std::clamp(static_cast<int>(detail), k_least_side, k_most_side);
+  const double affordable = std::sqrt(k_most_drawn / std::max(layers(state, sheets), 1e-9));
+  const int side = static_cast<int>(std::clamp<double>(std::min(detail, affordable), k_least_side, k_most_side));
   std::vector<std::array<double, 2>> seen(label_count, {0, 0});
   for (const std::array<double, 3>& d : k_directions) {
     stage.check();
