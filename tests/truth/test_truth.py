@@ -44,6 +44,7 @@ def test_random_input_meets_the_truths():
         ("cells_exact.check_dual_edges_are_ways", 20270111),  # a sliver of a third cell between all samples
         ("cells_exact.check_dual_edges_are_ways", 4668),  # straight to the place beside the site, on another sheet
         ("cells_exact.check_dual_edges_are_ways", 8006),  # by a corner of the boundary, straight over nothing
+        ("cells.exact_cells_of_places", 1000000149555),  # a spike of needles: three gigabytes of windows went round it
         ("cells_exact.check_borders_are_nearest", 612),  # straight on at a corner, another way beside it
         ("cells.cells_of_few_sites", 123091566),  # told in single precision to be as near as another way
         ("lines_and_maps.lines_along_fields", 20626990),  # ended at a singularity past its length

@@ -153,9 +153,10 @@ std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices,
   if (owners) {
     parallel_for(static_cast<Index>(groups.size()), threads, 1, [&](Index place, int thread) {
       tree.visit_later(place, [&](Index g, Index h) {
-        stage.check();
-        groups[g].tree.visit_both(
-            groups[h].tree, [&](Index i, Index j) { look(groups[g].triangles[i], groups[h].triangles[j], thread); });
+        groups[g].tree.visit_both(groups[h].tree, [&](Index i, Index j) {
+          stage.check();
+          look(groups[g].triangles[i], groups[h].triangles[j], thread);
+        });
       });
     });
   } else if (!groups.empty()) {
