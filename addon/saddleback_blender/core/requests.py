@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
 from fractions import Fraction
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -51,6 +52,7 @@ class Surface:
     used: Indices | None = None
     kept: Indices | None = None
     metric: str = ""  # names the lengths by which it is measured, where they are not those of space
+    shape: str = ""  # names the places of the mesh's vertices, wherever the object stands, however it is turned
     place: Reals = field(default_factory=lambda: WORLD, repr=False)
 
     @cached_property
@@ -138,23 +140,38 @@ def content_of(call: object) -> str:
     return digest(*_content(call))
 
 
-def _content(value: object) -> Iterator[object]:
+def content_at_rest(call: object) -> str:
+    """The same, but equal after the object was moved or turned, which takes with it what was made of it.
+
+    Not where the run reads anything else that has a place or a direction in the world.
+    """
+    content = list(_content(call, True))
+    arrays = (part for part in content if isinstance(part, np.ndarray))
+    is_bound = any(array.dtype.kind == "f" and array.shape[-1:] == (3,) for array in arrays)
+    heights = (part for name, part in pairwise(content) if isinstance(name, str) and name.startswith("base_height"))
+    return content_of(call) if is_bound or any(heights) else digest(*content)
+
+
+def _content(value: object, at_rest: bool = False) -> Iterator[object]:
     if isinstance(value, (DiskCache, LiveCells, FlowingCells)):
         return
     if isinstance(value, partial):
         yield value.func.__qualname__
-        yield from _content(value.args)
+        yield from _content(value.args, at_rest)
     elif isinstance(value, Surface):
-        yield from (value.key, value.vertex_count, value.used, value.kept, value.place)
+        yield from (value.vertex_count, value.used, value.kept, value.metric)
+        yield from (value.shape, value.triangles) if at_rest and value.shape else (value.key, value.place)
+    elif at_rest and isinstance(value, ShapeTemplate):
+        yield digest(*_content(value))  # its places are in a plane of its own
     elif is_dataclass(value):
         for field in fields(value):
             yield field.name
             if field.name != "threads":
-                yield from _content(getattr(value, field.name))
+                yield from _content(getattr(value, field.name), at_rest)
     elif isinstance(value, (tuple, list)):
         yield len(value)
         for part in value:
-            yield from _content(part)
+            yield from _content(part, at_rest)
     else:
         yield value
 

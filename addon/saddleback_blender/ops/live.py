@@ -43,7 +43,7 @@ class Watched:
         self.name = source.name
         self.layer = source.saddleback.layer_word
         self.cells = FlowingCells()
-        self.seen: dict[str, str] = {}  # by kind of run: the content of the request that was made last
+        self.seen: dict[str, str] = {}  # by kind of run: the content at rest of the request that was made last
         self.inputs: set[tuple[str, str]] = set()  # data-blocks that are read
         self.is_changed = False
         self.is_accepted = False  # what was made belongs to what it is made from, whatever that is by now
@@ -267,8 +267,8 @@ def _begin(context: bpy.types.Context, target: Watched) -> None:
         operator, call = _read(context, target, kind)
         if call is None:
             text = " ".join(operator.errors)
-        elif target.is_accepted or target.seen.get(kind) == operator.content:
-            target.seen[kind] = operator.content
+        elif target.is_accepted or target.seen.get(kind) == operator.content_at_rest:
+            target.seen[kind] = operator.content_at_rest
         else:
             _start(target, operator, call)
             return
@@ -296,7 +296,8 @@ def _write(context: bpy.types.Context, target: Watched, operator: Any) -> None:
     finally:
         live.is_writing = False
         jobs.state.written.discard(source.name)
-    target.seen[operator.settings_name] = operator.content  # what was refused is not tried again before a change
+    # What was refused is not tried again before a change.
+    target.seen[operator.settings_name] = operator.content_at_rest
     target.is_changed |= len(_kinds(target)) > 1  # others may read what this one wrote
     _drop_preview()
     live.operator = live.target = None

@@ -193,6 +193,26 @@ def test_nothing_is_done_where_nothing_that_is_read_changed(item, monkeypatch):
     steps()
 
 
+def test_what_was_made_goes_with_the_object_and_is_not_made_again(item, monkeypatch):
+    def began(change):
+        runs = []
+        monkeypatch.setattr(live, "_start", lambda *of: (runs.append(1), start(*of)))
+        change()
+        steps()
+        return bool(runs)
+
+    start, edges = live._start, find_output(item, "edges").data
+    before, lines = cells(item), positions(edges)
+    assert not began(lambda: setattr(item, "location", (131072.0, -3.0, 1.5)))
+    assert not began(lambda: setattr(item, "rotation_euler", (0.3, -0.7, 2.0)))
+    assert np.array_equal(cells(item), before) and np.array_equal(positions(edges), lines)
+    assert began(lambda: setattr(item, "scale", (1.0, 2.0, 1.0)))
+    assert began(lambda: setattr(item.saddleback.tessellate, "make_shell", True))
+    assert not began(lambda: setattr(item, "rotation_euler", (0.0, 0.0, 0.0)))
+    assert began(lambda: setattr(item.saddleback.tessellate, "base_height_share", 20.0))  # above its lowest point
+    assert began(lambda: setattr(item, "rotation_euler", (0.5, 0.0, 0.0)))
+
+
 def test_the_last_of_quick_changes_is_what_is_made(item):
     for count in (300, 200, 30):
         item.saddleback.tessellate.count = count

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ... import compat
 from ...core.errors import BadInputError
-from ...core.requests import Surface
+from ...core.requests import Surface, digest
 from ...core.results import EdgeMarks, Indices, Reals
 from ...core.solids.mesh_edges import edge_keys
 from ...core.surfaces.parts import NO_EDGES, lonely_edge, part
@@ -85,7 +85,17 @@ def read_surface(
     if len(copied):
         used = np.concatenate([np.arange(count, dtype=np.int32), copied])[slice(None) if used is None else used]
     place = np.array(level_place(source), np.float64)
-    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used, kept, place=place)
+    return Surface(
+        source.name, vertices if used is None else vertices[used], triangles, count, used, kept,
+        shape=_shape(source, mesh, place), place=place,
+    )  # fmt: skip
+
+
+def _shape(source: bpy.types.Object, mesh: bpy.types.Mesh, place: Reals) -> str:
+    """Names what the mesh and the object's scale make, to as many digits as stay when it is turned."""
+    scale = (np.linalg.inv(place) @ np.array(source.matrix_world, np.float64))[:3, :3]
+    largest = np.abs(scale).max()
+    return digest(compat.read_positions(mesh), f"{largest:.5g}", np.round(scale / largest, 5) + 0.0)
 
 
 def read_triangles(mesh: bpy.types.Mesh) -> Indices:
