@@ -75,6 +75,11 @@ def all_or_nothing() -> Iterator[None]:
         step()
 
 
+def is_writing() -> bool:
+    """Tells whether something is being written as a whole or not at all."""
+    return bool(_open)
+
+
 def when_written(step: Callable[[], None]) -> None:
     """Calls it when all is written and nothing has failed; at once where nothing is being written."""
     if _open:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that was made of a body goes with it: in every frame, in the view and in the final render, in copies."""
 
-from functools import cached_property
+from functools import cached_property, partial
 
 import bpy
 import numpy as np
@@ -9,12 +9,13 @@ import pytest
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 from output_scenes import read_attribute
-from scenes import add_object, positions
+from scenes import add_object, positions, sphere
 
-from saddleback_blender import compat, nodes
+from saddleback_blender import compat, jobs, nodes
 from saddleback_blender.bridge.inputs.curves_in import polylines_of
 from saddleback_blender.bridge.outputs import following
 from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
+from saddleback_blender.follow_nodes import follows
 
 CELLS = 60
 # Of a cell's size: how far a vertex may be from where it is to be.
@@ -469,3 +470,56 @@ def test_an_artist_s_bevel_stays_seen_and_our_lines_stay_lines():
     output.data.bevel_depth = 0.1
     bpy.context.view_layer.update()
     assert len(points_of_any(output)) >= 8 * len(line.points)
+
+
+def places_in_world(output):
+    """(n, 3) of an output's vertices, with its modifiers."""
+    shown = output.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = shown.to_mesh()
+    places = moved(output.matrix_world, positions(mesh))
+    shown.to_mesh_clear()
+    return places
+
+
+def apply_transform(**what):
+    bpy.ops.object.transform_apply(**({"location": False, "rotation": False, "scale": False} | what))
+
+
+def set_origin():
+    bpy.context.scene.cursor.location = (0.0, 0.0, 7.0)
+    bpy.ops.object.origin_set(type="ORIGIN_CURSOR")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        partial(apply_transform, location=True, rotation=True, scale=True),
+        partial(apply_transform, scale=True),
+        set_origin,
+    ],
+    ids=["all", "scale", "origin"],
+)
+def test_what_was_made_stays_where_a_transform_is_applied_or_an_origin_set(change):
+    """Blender leaves children where they are; what follows the surface would be transformed twice."""
+    item = sphere(subdivisions=3)
+    bpy.ops.saddleback.tessellate(count=40, make_dual=True)
+    item.location, item.rotation_euler, item.scale = (5.0, 1.0, 2.0), (1.0, 0.5, 0.2), (2.0, 1.0, 1.0)
+    bpy.context.view_layer.update()
+    outputs = [find_output(item, role) for role in ("edges", "dual")]
+    before = [places_in_world(output) for output in outputs]
+    change()
+    bpy.context.view_layer.update()
+    for output, places in zip(outputs, before, strict=True):
+        np.testing.assert_allclose(places_in_world(output), places, atol=1e-5)
+        assert not follows(output, item)
+    assert "follows again once it is made again" in jobs.state.line
+    bpy.ops.saddleback.tessellate(count=40, make_dual=True)
+    bpy.context.view_layer.update()
+    surface = moved(item.matrix_world, positions(item.data))
+    for output in outputs:
+        assert follows(output, item)
+        np.testing.assert_allclose(places_in_world(output).mean(axis=0), surface.mean(axis=0), atol=0.05)
+    item.data.vertices[0].co *= 1.1
+    item.data.update_tag()
+    bpy.context.view_layer.update()
+    assert all(follows(output, item) for output in outputs)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from . import (
+    applied,
     apply_look,
     asset_library,
     bake,
@@ -54,10 +55,12 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     live.register()
+    applied.register()
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
+    applied.unregister()
     live.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -21,6 +21,8 @@ from ...core.surfaces.seen_places import seen_from
 from ...follow_nodes import follows
 from ..tokens import (
     LAYER,
+    LOCAL,
+    MARKS,
     MATERIALS,
     NAME,
     PLACE,
@@ -88,12 +90,12 @@ def replace_object(
         given = _names(data)
     else:
         rollback.remember(item, "matrix_basis", "matrix_parent_inverse", "parent_type", "parent", "data")
-        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE, CONTENT)
+        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE, LOCAL, MARKS, CONTENT)
         keep_data(item)
         if CONTENT in item:
             del item[CONTENT]
         _show_again(item)
-        moved = _artists_move(item)
+        moved = _artists_move(item, source)
         given = _names(data)
         _swap_data(item, data)
     item[MATERIALS] = "\n".join(given)
@@ -108,6 +110,8 @@ def replace_object(
     is_sheared = not _are_equal(basis, place)
     item.matrix_parent_inverse = inverse @ place @ basis.inverted_safe() if is_sheared else inverse
     item[PLACE] = [value for row in (basis if is_sheared else place) for value in row]
+    item[LOCAL] = [value for row in inverse @ place for value in row]
+    item[MARKS] = _marks(source).ravel().tolist()
     item.matrix_basis = moved @ (basis if is_sheared else place)
     data.name = item.name
     return item
@@ -342,14 +346,38 @@ def _remove_data(data: bpy.types.ID) -> None:
         (bpy.data.curves if isinstance(data, bpy.types.Curve) else bpy.data.meshes).remove(data)
 
 
-def _artists_move(item: bpy.types.Object) -> Matrix:
+def _artists_move(item: bpy.types.Object, source: bpy.types.Object) -> Matrix:
     """Returns what the artist did to the place that we gave the object; exactly nothing where that is only rounding."""
-    ours = item.get(PLACE)
-    if ours is None or len(ours) != 16:
+    before = _noted(item, PLACE)
+    if before is None or was_applied(item, source):
         return Matrix.Identity(4)
-    values = [float(value) for value in ours]
-    before = Matrix([values[4 * row : 4 * row + 4] for row in range(4)])
     return Matrix.Identity(4) if _are_equal(item.matrix_basis, before) else item.matrix_basis @ before.inverted_safe()
+
+
+def was_applied(item: bpy.types.Object, source: bpy.types.Object) -> bool:
+    """Tells whether the source's transform was applied, or its origin set, since the output was made: its vertices are
+    elsewhere in its space, and at the same places as seen from the output, which Blender leaves where it is.
+    """
+    local, noted = _noted(item, LOCAL), np.array(item.get(MARKS, ()), np.float64).reshape(-1, 3)
+    now = _marks(source)
+    if local is None or len(now) != len(noted) or np.array_equal(now, noted):
+        return False
+    way = np.array(source.matrix_world.inverted_safe() @ item.matrix_world @ local.inverted_safe(), np.float64)
+    expected = noted @ way[:3, :3].T + way[:3, 3]
+    rounding = 1e-5 * max(np.abs(now).max(), np.abs(noted).max())
+    return bool(np.abs(expected - now).max() <= rounding < np.abs(expected - noted).max())
+
+
+def _marks(source: bpy.types.Object) -> np.ndarray:
+    """(4, 3) where some of a mesh's vertices are, in its space; (0, 3) where it has none."""
+    vertices = source.data.vertices
+    some = [vertices[i * (len(vertices) - 1) // 3].co for i in range(4 if len(vertices) else 0)]
+    return np.array(some, np.float64).reshape(-1, 3)
+
+
+def _noted(item: bpy.types.Object, key: str) -> Matrix | None:
+    values = [float(value) for value in item.get(key, ())]
+    return Matrix([values[4 * row : 4 * row + 4] for row in range(4)]) if len(values) == 16 else None
 
 
 def _are_equal(one: Matrix, other: Matrix) -> bool:
