@@ -472,15 +472,6 @@ def test_an_artist_s_bevel_stays_seen_and_our_lines_stay_lines():
     assert len(points_of_any(output)) >= 8 * len(line.points)
 
 
-def places_in_world(output):
-    """(n, 3) of an output's vertices, with its modifiers."""
-    shown = output.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    mesh = shown.to_mesh()
-    places = moved(output.matrix_world, positions(mesh))
-    shown.to_mesh_clear()
-    return places
-
-
 def apply_transform(**what):
     bpy.ops.object.transform_apply(**({"location": False, "rotation": False, "scale": False} | what))
 
@@ -506,11 +497,11 @@ def test_what_was_made_stays_where_a_transform_is_applied_or_an_origin_set(chang
     item.location, item.rotation_euler, item.scale = (5.0, 1.0, 2.0), (1.0, 0.5, 0.2), (2.0, 1.0, 1.0)
     bpy.context.view_layer.update()
     outputs = [find_output(item, role) for role in ("edges", "dual")]
-    before = [places_in_world(output) for output in outputs]
+    before = [points_of_any(output) for output in outputs]
     change()
     bpy.context.view_layer.update()
     for output, places in zip(outputs, before, strict=True):
-        np.testing.assert_allclose(places_in_world(output), places, atol=1e-5)
+        np.testing.assert_allclose(points_of_any(output), places, atol=1e-5)
         assert not follows(output, item)
     assert "follows again once it is made again" in jobs.state.line
     bpy.ops.saddleback.tessellate(count=40, make_dual=True)
@@ -518,7 +509,7 @@ def test_what_was_made_stays_where_a_transform_is_applied_or_an_origin_set(chang
     surface = moved(item.matrix_world, positions(item.data))
     for output in outputs:
         assert follows(output, item)
-        np.testing.assert_allclose(places_in_world(output).mean(axis=0), surface.mean(axis=0), atol=0.05)
+        np.testing.assert_allclose(points_of_any(output).mean(axis=0), surface.mean(axis=0), atol=0.05)
     item.data.vertices[0].co *= 1.1
     item.data.update_tag()
     bpy.context.view_layer.update()

@@ -111,7 +111,7 @@ def replace_object(
     item.matrix_parent_inverse = inverse @ place @ basis.inverted_safe() if is_sheared else inverse
     item[PLACE] = [value for row in (basis if is_sheared else place) for value in row]
     item[LOCAL] = [value for row in inverse @ place for value in row]
-    item[MARKS] = _marks(source).ravel().tolist()
+    item[MARKS] = marks_of(source).ravel().tolist()
     item.matrix_basis = moved @ (basis if is_sheared else place)
     data.name = item.name
     return item
@@ -359,7 +359,7 @@ def was_applied(item: bpy.types.Object, source: bpy.types.Object) -> bool:
     elsewhere in its space, and at the same places as seen from the output, which Blender leaves where it is.
     """
     local, noted = _noted(item, LOCAL), np.array(item.get(MARKS, ()), np.float64).reshape(-1, 3)
-    now = _marks(source)
+    now = marks_of(source)
     if local is None or len(now) != len(noted) or np.array_equal(now, noted):
         return False
     way = np.array(source.matrix_world.inverted_safe() @ item.matrix_world @ local.inverted_safe(), np.float64)
@@ -368,7 +368,7 @@ def was_applied(item: bpy.types.Object, source: bpy.types.Object) -> bool:
     return bool(np.abs(expected - now).max() <= rounding < np.abs(expected - noted).max())
 
 
-def _marks(source: bpy.types.Object) -> np.ndarray:
+def marks_of(source: bpy.types.Object) -> np.ndarray:
     """(4, 3) where some of a mesh's vertices are, in its space; (0, 3) where it has none."""
     vertices = source.data.vertices
     some = [vertices[i * (len(vertices) - 1) // 3].co for i in range(4 if len(vertices) else 0)]
