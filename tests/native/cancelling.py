@@ -11,26 +11,32 @@ import saddleback as sb
 
 
 def check_progress_and_cancel(call: Callable[[sb.Job], object], fraction: float) -> None:
-    """Progress rises until `fraction`; a call cancelled there ends with `Cancelled`, at once."""
-    job, seen, ended = sb.Job(), [], []
+    """Progress rises until `fraction`; a call cancelled there ends with `Cancelled`, at once.
 
-    def run() -> None:
-        try:
-            call(job)
-        except sb.Cancelled:
-            ended.append(time.perf_counter())
+    A call that was over before this thread had its turn again on a busy machine is tried once more, five times in all.
+    """
+    for _ in range(5):
+        job, seen, ended = sb.Job(), [], []
 
-    worker = threading.Thread(target=run)
-    worker.start()
-    while job.fraction < fraction and worker.is_alive():
-        seen.append(job.fraction)
-        time.sleep(0.005)
-    asked = time.perf_counter()
-    job.cancel()
-    worker.join()
-    assert seen == sorted(seen)
-    assert ended
-    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+        def run(job: sb.Job = job, ended: list[float] = ended) -> None:
+            try:
+                call(job)
+            except sb.Cancelled:
+                ended.append(time.perf_counter())
+
+        worker = threading.Thread(target=run)
+        worker.start()
+        while job.fraction < fraction and worker.is_alive():
+            seen.append(job.fraction)
+            time.sleep(0.002)
+        asked = time.perf_counter()
+        job.cancel()
+        worker.join()
+        assert seen == sorted(seen)
+        if ended:
+            assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+            return
+    raise AssertionError("the call was never cancelled")
 
 
 def seconds_to_stop(call: Callable[[sb.Job], object], is_time: Callable[[sb.Job], bool]) -> float:
