@@ -28,7 +28,7 @@ def sphere_source(name="Ball", levels=3, place=None):
 
 
 def result_of(item, count=25, sites=None, **lengths):
-    """Cells of the object as it stands in the world, their mesh with the given gap, inset and thickness."""
+    """Cells of the object's surface, their mesh with the given gap, inset and thickness."""
     surface = read_surface(item, item.data)
     if sites is None:
         sites = np.linspace(0, len(surface.vertices) - 1, count)
@@ -54,6 +54,12 @@ def result_of(item, count=25, sites=None, **lengths):
         stop_reason="max_iterations",
         mesh=build_cell_mesh(cells.split_vertices, cells.split_triangles, cells.split_cell, CellShape(**lengths)),
     )
+
+
+def in_world(source, places, origin=1.0):
+    """Places of the object's surface, with an origin of 0 directions, in the world: (n, 3)."""
+    location, rotation, _ = source.matrix_world.decompose()
+    return places @ np.array(rotation.to_matrix(), np.float64).T + origin * np.array(location, np.float64)
 
 
 def world_positions(item, mesh=None):

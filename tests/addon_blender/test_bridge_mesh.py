@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh becomes the surface that the artist sees, in world space."""
+"""A Blender mesh becomes the surface that the artist sees, as seen from where the object stands."""
 
 import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix
-from scenes import add_object, grid, grid_arrays, sphere
+from output_scenes import in_world, world_positions
+from scenes import add_object, grid, grid_arrays, positions, sphere
 
 from saddleback_blender import compat
 from saddleback_blender.bridge.inputs import mesh_in
@@ -53,13 +54,48 @@ def test_concave_polygon_is_cut_inside_itself():
     )[:, 2] > 0).all()  # fmt: skip
 
 
-def test_non_uniform_scale_and_place_are_applied():
+def test_non_uniform_scale_is_applied_and_the_place_is_not():
     item = grid(n=3)
-    item.matrix_world = Matrix.Translation((5, 6, 7)) @ Matrix.Diagonal((2, 3, 1, 1))
+    item.matrix_world = (
+        Matrix.Translation((5, 6, 7)) @ Matrix.Rotation(1.0, 4, (1, 2, 3)) @ Matrix.Diagonal((2, 3, 1, 1))
+    )
     bpy.context.view_layer.update()
     surface = read(item)
-    np.testing.assert_allclose(surface.vertices.min(axis=0), (5, 6, 7))
-    np.testing.assert_allclose(surface.vertices.max(axis=0), (7, 9, 7))
+    np.testing.assert_allclose(surface.vertices.min(axis=0), (0, 0, 0))
+    np.testing.assert_allclose(surface.vertices.max(axis=0), (2, 3, 0))
+    np.testing.assert_allclose(in_world(item, surface.vertices), world_positions(item), atol=1e-6)
+
+
+def sheared():
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale, parent.rotation_euler = (1.0, 3.0, 0.7), (0.2, -0.4, 0.5)
+    item = sphere(subdivisions=2)
+    item.parent, item.rotation_euler = parent, (0.4, 0.7, -0.3)
+    return item
+
+
+@pytest.mark.parametrize("make", [sphere, sheared])
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (1.2345, -2.0, 0.07), (1.0 / 3.0, np.pi, np.e), (-0.5, -0.5, -0.5)])
+def test_the_surface_is_where_the_mesh_is(make, scale):
+    item = make()
+    item.scale, item.location = scale, (3.0, -1.0, 2.0)
+    bpy.context.view_layer.update()
+    surface = read(item)
+    np.testing.assert_allclose(in_world(item, surface.vertices), world_positions(item), atol=4e-6)
+    np.testing.assert_allclose(mesh_in.unscaled(item, surface.vertices), positions(item.data), atol=1e-12)
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (1.2345, -2.0, 0.07), (1.0 / 3.0, np.pi, np.e)])
+def test_a_turned_object_has_the_same_surface(scale):
+    item = sphere()
+    item.scale = scale
+    bpy.context.view_layer.update()
+    first = read(item).key
+    for turn in np.random.default_rng(0).uniform(-3.0, 3.0, (20, 3)):
+        item.rotation_euler, item.location = turn, 1000.0 * turn
+        bpy.context.view_layer.update()
+        assert read(item).key == first
 
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 1, 1), (-1, -2, 1), (-1, -1, -1)])

@@ -552,19 +552,30 @@ def test_seamless_cells_fit_the_opposite_side(iterations):
         assert each.std() < 0.2 * each.mean()
 
 
-def test_seamless_cells_have_gaps_and_rims_across_the_sides():
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("underside", [False, True])
+def test_seamless_cells_have_gaps_and_rims_across_the_sides(seed, underside):
     item = turned_rectangle()
-    bpy.ops.saddleback.voronoi_2d(count=30, iterations=10, seamless=True, gap=0.03, inset=0.04, thickness=0.05)
+    bpy.ops.saddleback.voronoi_2d(
+        count=30, seed=seed, iterations=10, seamless=True, gap=0.03, inset=0.04, thickness=0.05, underside=underside
+    )
     cells = find_output(item, CELLS)
     attribute = np.empty(len(cells.data.polygons), np.int32)
     cells.data.attributes["saddleback_cell"].data.foreach_get("value", attribute)
-    assert set(attribute) == set(range(30))
+    assert set(attribute) == set(range(30)) and "left out" not in jobs.state.line
     places = positions(cells.data)
-    heights = places[:, 2] - places[:, 2].min()
-    low, high = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
-    ends = [np.sort(places[(np.abs(places[:, 0] - end) < 1e-5) & (heights > 0.049)][:, 1]) for end in (low[0], high[0])]
-    assert len(ends[0]) == len(ends[1]) > 2
-    assert np.abs(ends[0] - ends[1]).max() < 1e-5
+    for axis, end in ((0, 2.0), (1, 1.0)):
+        ends = [places[np.abs(places[:, axis] - at) < 1e-6] for at in (0.0, end)]
+        assert min(map(len, ends)) > 8 and (places[:, axis] > -1e-6).all() and (places[:, axis] < end + 1e-6).all()
+        apart = np.linalg.norm((ends[0][:, None] - ends[1][None])[..., [1 - axis, 2]], axis=2)
+        assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-5
+    uses = {}
+    for polygon in cells.data.polygons:
+        for key in polygon.edge_keys:
+            uses[key] = uses.get(key, 0) + 1
+    assert max(uses.values()) == 2
+    single = [key for key, times in uses.items() if times == 1]
+    assert not single if underside else np.abs(places[np.array(single).ravel(), 2]).max() < 1e-6
 
 
 def test_seamless_says_what_it_needs():

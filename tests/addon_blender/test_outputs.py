@@ -9,6 +9,7 @@ import pytest
 from output_scenes import (
     HARD_PLACE,
     edges_of,
+    in_world,
     read_attribute,
     result_of,
     sphere_source,
@@ -116,7 +117,8 @@ def test_edge_mesh_lies_on_the_surface_and_shares_branch_points(hard):
     ends = result.edge_points[np.concatenate([result.edge_offsets[:-1], result.edge_offsets[1:] - 1])]
     assert (degree == 3).sum() == len(np.unique(ends[np.tile(~result.edge_closed, 2)], axis=0))
     places = world_positions(item)
-    nearest = np.linalg.norm(places[:, None] - result.edge_points[None], axis=2).min(axis=1)
+    points = in_world(source, result.edge_points)
+    nearest = np.linalg.norm(places[:, None] - points[None], axis=2).min(axis=1)
     assert nearest.max() < 1e-5
     a, b = (places[edges_of(item.data)[:, i]] for i in range(2))
     wanted = 0.0
@@ -213,7 +215,7 @@ def test_curve_object_holds_the_same_lines(hard):
         places.append(co.reshape(-1, 4)[:, :3])
     matrix = np.array(item.matrix_world, np.float64)
     places = np.concatenate(places) @ matrix[:3, :3].T + matrix[:3, 3]
-    there = np.linalg.norm(places[:, None] - result.edge_points[None], axis=2)
+    there = np.linalg.norm(places[:, None] - in_world(source, result.edge_points)[None], axis=2)
     assert there.min(axis=1).max() < 1e-5
     assert there.min(axis=0).max() < 1e-5
     assert item.data.materials[0].name == "Saddleback Edges"
@@ -322,13 +324,13 @@ def test_centers_carry_cell_area_normal_and_size(hard):
     bpy.context.view_layer.update()
     mesh = item.data
     assert (len(mesh.vertices), len(mesh.edges), len(item.modifiers)) == (25, 0, 0)
-    np.testing.assert_allclose(world_positions(item), result.sites_position, atol=1e-5)
+    np.testing.assert_allclose(world_positions(item), in_world(source, result.sites_position), atol=1e-5)
     np.testing.assert_array_equal(read_attribute(mesh, "saddleback_cell"), np.arange(25))
     np.testing.assert_allclose(read_attribute(mesh, "saddleback_area"), result.cell_area, rtol=1e-6)
     np.testing.assert_allclose(np.pi * read_attribute(mesh, "saddleback_size") ** 2, result.cell_area, rtol=1e-5)
     turn = np.array(item.matrix_world)[:3, :3]
     normal = read_attribute(mesh, "saddleback_normal") @ turn.T
-    np.testing.assert_allclose(normal, result.sites_normal, atol=1e-5)
+    np.testing.assert_allclose(normal, in_world(source, result.sites_normal, 0.0), atol=1e-5)
 
 
 @pytest.mark.parametrize("hard", [False, True])
@@ -341,11 +343,12 @@ def test_instances_stand_upright_on_every_center_in_the_size_of_the_cell(hard):
     found = instances_of(item)
     assert len(found) == 25
     size = 0.5 * np.sqrt(result.cell_area / np.pi)
+    sites, normals = in_world(source, result.sites_position), in_world(source, result.sites_normal, 0.0)
     for matrix, instanced in found:
         assert instanced == cone
-        i = int(np.linalg.norm(result.sites_position - matrix[:3, 3], axis=1).argmin())
-        np.testing.assert_allclose(matrix[:3, 3], result.sites_position[i], atol=1e-5)
-        np.testing.assert_allclose(matrix[:3, 2], size[i] * result.sites_normal[i], atol=1e-5)
+        i = int(np.linalg.norm(sites - matrix[:3, 3], axis=1).argmin())
+        np.testing.assert_allclose(matrix[:3, 3], sites[i], atol=1e-5)
+        np.testing.assert_allclose(matrix[:3, 2], size[i] * normals[i], atol=1e-5)
         np.testing.assert_allclose(matrix[:3, :3].T @ matrix[:3, :3], size[i] ** 2 * np.eye(3), atol=1e-5)
 
 

@@ -189,20 +189,3 @@ def test_ribs_of_a_cylinder_have_room_everywhere(profile):
     shell = runs.tessellate(request, runs.new_progress()).shell
     assert (shell.pieces, shell.thinner, shell.crossing) == (1, 0.0, 0)
     np.testing.assert_allclose(shell.wall, 0.004, rtol=1e-3)
-
-
-def test_far_from_the_origin_of_the_world_there_is_as_much_room():
-    """What is made of an object is kept in its own space, where it is as exact as at the origin."""
-    vertices, triangles = synthetic_cells.sphere(3)
-    settings = TessellateSettings(count=60, iterations=5, make_shell=True, make_cells=True, gap=0.02, thickness=0.05)
-    found = []
-    for middle in ((0, 0, 0), (2.0**17, -(2.0**18), 2.0**15)):
-        place = np.eye(4)
-        place[:3, 3] = middle
-        surface = Surface("Ball", vertices + np.array(middle, float), triangles, len(vertices), place=place)
-        found.append(runs.tessellate(TessellateRequest(surface, settings), runs.new_progress()))
-    here, there = found
-    assert (there.shell.thinner, there.shell.crossing) == (here.shell.thinner, here.shell.crossing) == (0.0, 0)
-    assert there.shell.volume == pytest.approx(here.shell.volume, rel=0.01)
-    assert len(there.mesh.thinner) == len(here.mesh.thinner) == 0
-    assert len(there.mesh.crossing) == 0

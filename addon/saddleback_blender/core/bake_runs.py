@@ -23,7 +23,7 @@ from .errors import BadInputError
 from .images.exr import exr_bytes
 from .images.png import png_bytes
 from .progress import Progress
-from .requests import BakeRequest
+from .requests import BakeRequest, Direction
 from .results import Indices, Reals
 from .runs import Solved, solved_cells
 from .settings import BakeSettings
@@ -128,7 +128,7 @@ class _Baker:
 
     def __init__(self, request: BakeRequest, solved: Solved, progress: Progress) -> None:
         self._request, self._cells, self._progress = request, solved.cells, progress
-        self._axes = _level(solved.site_normals)
+        self._axes = _level(solved.site_normals, request.up)
         self._outside: Indices | None = None
         self._without_area: Indices = np.empty(0, np.int32)
         self._passes = 2 * len(request.tiles)
@@ -203,9 +203,9 @@ class _Baker:
         return f"'{self._name}': {faces} ({named}{more}) {what} in {self._label}; {remedy}"
 
 
-def _level(normals: Reals) -> Reals:
-    """Directions (n, 3) along the surface to the right where the world's Z is upwards; along X on level ground."""
-    right = np.cross(np.array([0.0, 0.0, 1.0]), normals)
+def _level(normals: Reals, up: Direction) -> Reals:
+    """Directions (n, 3) along the surface to the right where `up` is upwards; along X on level ground."""
+    right = np.cross(np.array(up), normals)
     is_level = np.linalg.norm(right, axis=1) > LEVEL
     return np.where(is_level[:, None], right, np.array([1.0, 0.0, 0.0]))
 

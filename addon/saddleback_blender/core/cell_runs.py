@@ -17,7 +17,6 @@ from .results import CellMesh, Reals
 from .settings import TessellateSettings, Voronoi2dSettings
 from .solids.cell_mesh import CellPieces, CellShape, cell_pieces, raise_cells
 from .solids.directions import smooth_directions
-from .surfaces.seen_places import WORLD
 
 # Of a cell's size: directions are smoothed over so much at least, so that they are found once for all usual heights.
 SMOOTHED = 0.2
@@ -46,18 +45,9 @@ def at_sites(surface: Surface, sites: Any, values: Reals | None) -> Reals | None
 
 
 def cells_of(
-    mesh: Any,
-    split: Any,
-    shape: CellShape,
-    key: tuple[str, ...],
-    progress: Progress,
-    cache: Cache,
-    place: Reals = WORLD,
+    mesh: Any, split: Any, shape: CellShape, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> CellMesh:
-    """The cells of the library's split mesh of its `mesh`, which `key` names, to be kept in the frame `place` (4, 4).
-
-    Only what changed is computed.
-    """
+    """The cells of the library's split mesh of its `mesh`, which `key` names. Only what changed is computed."""
     count = int(np.max(split.triangle_cell, initial=0)) + 1
     highest = float(np.max(shape.height, initial=0.0))
     reach = max(highest, SMOOTHED * math.sqrt(mesh.area / count)) if highest > 0.0 else 0.0
@@ -68,9 +58,9 @@ def cells_of(
 
     def raised() -> CellMesh:
         part = ("cell pieces", *key, digest(shape.rim_start, shape.rim_width, shape.differs, shape.is_round, reach))
-        return raise_cells(cache.get(part, pieces, lambda found: found.nbytes), shape, progress, place)
+        return raise_cells(cache.get(part, pieces, lambda found: found.nbytes), shape, progress)
 
-    whole = ("cell mesh", *key, digest(*astuple(shape), place))
+    whole = ("cell mesh", *key, digest(*astuple(shape)))
     return cache.get(whole, raised, lambda made: made.nbytes)
 
 

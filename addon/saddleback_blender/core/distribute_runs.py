@@ -262,10 +262,7 @@ def _drawn(
     templates = [tilted(template, settings.tilt, THIN if clears else ROUND) for template in laid.templates]
     shapes = [native.load().Shape(*[list(part) for part in template.parts]) for template in laid.templates]
     solids = [template.solid for template in templates]
-    order = Order(
-        laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.surface.place,
-        request.threads,
-    )  # fmt: skip
+    order = Order(laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.threads)
 
     bent = None  # not kept: it is far larger than all else
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -30,19 +29,19 @@ from .settings import (
 )
 from .shapes.shape_templates import ShapeTemplate, Solid
 from .solids.cell_mesh import CellShape
-from .surfaces.seen_places import WORLD
+from .solids.rib_surface import UPRIGHT
 
 Number = TypeVar("Number", bound=np.generic)
 
 
 @dataclass(frozen=True)
 class Surface:
-    """The triangles of one Blender mesh in world space, without its loose vertices.
+    """The triangles of one Blender mesh with its object's scale, without its loose vertices.
 
+    It is seen from where the object stands, as it is turned; so are all places and directions beside it.
     `vertices` (n, 3) and `triangles` (F, 3), counter-clockwise seen from outside. `used` (n,) gives each vertex its
     number in the Blender mesh of `vertex_count` vertices; None where all are used. `kept` (F,) gives each triangle its
-    number among the Blender mesh's; None where all are in the surface. `place` (4, 4) is the frame in which what is
-    made of it is kept.
+    number among the Blender mesh's; None where all are in the surface.
     """
 
     name: str  # of the object, for messages
@@ -52,8 +51,6 @@ class Surface:
     used: Indices | None = None
     kept: Indices | None = None
     metric: str = ""  # names the lengths by which it is measured, where they are not those of space
-    shape: str = ""  # names the places of the mesh's vertices, wherever the object stands, however it is turned
-    place: Reals = field(default_factory=lambda: WORLD, repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -140,48 +137,34 @@ def content_of(call: object) -> str:
     return digest(*_content(call))
 
 
-def content_at_rest(call: object) -> str:
-    """The same, but equal after the object was moved or turned, which takes with it what was made of it.
-
-    Not where the run reads anything else that has a place or a direction in the world.
-    """
-    content = list(_content(call, True))
-    arrays = (part for part in content if isinstance(part, np.ndarray))
-    is_bound = any(array.dtype.kind == "f" and array.shape[-1:] == (3,) for array in arrays)
-    heights = (part for name, part in pairwise(content) if isinstance(name, str) and name.startswith("base_height"))
-    return content_of(call) if is_bound or any(heights) else digest(*content)
-
-
-def _content(value: object, at_rest: bool = False) -> Iterator[object]:
+def _content(value: object) -> Iterator[object]:
     if isinstance(value, (DiskCache, LiveCells, FlowingCells)):
         return
     if isinstance(value, partial):
         yield value.func.__qualname__
-        yield from _content(value.args, at_rest)
+        yield from _content(value.args)
     elif isinstance(value, Surface):
-        yield from (value.vertex_count, value.used, value.kept, value.metric)
-        yield from (value.shape, value.triangles) if at_rest and value.shape else (value.key, value.place)
-    elif at_rest and isinstance(value, ShapeTemplate):
-        yield digest(*_content(value))  # its places are in a plane of its own
+        yield from (value.key, value.vertex_count, value.used, value.kept)
     elif is_dataclass(value):
         for field in fields(value):
             yield field.name
             if field.name != "threads":
-                yield from _content(getattr(value, field.name), at_rest)
+                yield from _content(getattr(value, field.name))
     elif isinstance(value, (tuple, list)):
         yield len(value)
         for part in value:
-            yield from _content(part, at_rest)
+            yield from _content(part)
     else:
         yield value
 
 
-Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places in the world (n, 3)
+Direction = tuple[float, float, float]
+Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places (n, 3)
 
 
 @dataclass(frozen=True)
 class Polyline:
-    """A curve through places in the world (n, 3), back to the first where closed."""
+    """A curve through places (n, 3), back to the first where closed."""
 
     points: Reals
     closed: bool
@@ -197,7 +180,7 @@ class StrokeLine(Polyline):
 
 @dataclass(frozen=True)
 class SingularPlace:
-    """A place in the world about which a field shall turn; an index of None is one unit of the field's symmetry."""
+    """A place about which a field shall turn; an index of None is one unit of the field's symmetry."""
 
     place: Reals  # (3,)
     index: Fraction | None
@@ -254,6 +237,7 @@ class TessellateRequest:
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     live: LiveCells | None = None  # shown the cells while they are relaxed
     flowing: FlowingCells | None = None  # cells to go on from
+    up: Direction = UPRIGHT  # the world's, where something stands on a base
 
 
 @dataclass(frozen=True)
@@ -266,8 +250,9 @@ class BakeRequest:
     uv: Reals  # (3 F, 2) UV places of the triangles' corners
     tiles: tuple[int, ...]  # numbers of the UDIM tiles, 1001 without tiles
     polygons: Indices  # (F,) polygon of the Blender mesh that each triangle is part of, for messages
-    directions: Reals | None = None  # (3 F, 3) in the world at the triangles' corners, where they are wanted
+    directions: Reals | None = None  # (3 F, 3) at the triangles' corners, in the axes that are wanted
     vertex_cell: Indices | None = None  # (V,) of the Blender mesh: the cells that are seen there, where they are known
+    up: Direction = UPRIGHT  # the world's
     threads: int = 0
 
 
@@ -307,7 +292,7 @@ class RibbonRequest:
 
 @dataclass(frozen=True)
 class GivenDirections:
-    """A vector attribute: directions in the world on the Blender mesh's vertices, or on its polygons."""
+    """A vector attribute: directions on the Blender mesh's vertices, or on its polygons."""
 
     vectors: Reals  # (V, 3) or (polygons, 3)
     symmetry: int
@@ -338,7 +323,7 @@ class ClassOrder:
 
 @dataclass(frozen=True)
 class KeptShapes:
-    """Shapes that lie there already, (n,) of each, in the world."""
+    """Shapes that lie there already, (n,) of each."""
 
     shape: Indices
     points: Reals  # (n, 3) centers
@@ -366,7 +351,7 @@ class DistributeRequest:
 
 @dataclass(frozen=True)
 class Voronoi2dRequest:
-    """One diagram of the plane. `sites` speaks of the Blender mesh's vertices, or of places in the world."""
+    """One diagram of the plane. `sites` speaks of the Blender mesh's vertices, or of places."""
 
     surface: Surface
     settings: Voronoi2dSettings
@@ -376,5 +361,5 @@ class Voronoi2dRequest:
     sites: Points | None = None  # None: place `settings.count`
     weights: Reals | None = None  # one for each of `sites`
     darkness: Reals | None = None  # (rows, columns) 0 to 1, the first row below; of the sites source IMAGE
-    circles: Reals | None = None  # (m, 3) world places that sweep circles grow from, where they are chosen
+    circles: Reals | None = None  # (m, 3) places that sweep circles grow from, where they are chosen
     threads: int = 0

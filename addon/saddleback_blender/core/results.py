@@ -227,6 +227,11 @@ class Sweep:
     # the circles, each as large as it gets.
     rings: Reals
 
+    def seen_from_center(self, places: Reals) -> Reals:
+        """Places (n, 3) by the first circle's center and axes."""
+        seen: Reals = (places - self.center) @ self.axes.T
+        return seen
+
 
 @dataclass(frozen=True)
 class Voronoi2dResult:

@@ -24,7 +24,7 @@ from .lengths import RIB_SHARE
 from .metrics import measured
 from .progress import Progress
 from .requests import Density, DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals, SurfacePolygons
+from .results import CellsResult, DistanceResult, Dual, LampShell, Reals, SurfacePolygons
 from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
 from .solids.crossings import find_crossings
@@ -35,7 +35,6 @@ from .surfaces.duals import dual_of, figures_of, finished
 from .surfaces.features import feature_lines
 from .surfaces.normals import upright_normals
 from .surfaces.polygons import patches_of, polygons_of
-from .surfaces.seen_places import seen_from
 from .surfaces.surface_places import compact_points, on_whole_surface, surface_points
 
 
@@ -64,7 +63,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         result = replace(result, edge_distance=surface.spread(found, np.inf, found))
     if has_mesh:
         shape = shape_of_each(shape_of(settings), request, solved.cells.sites)
-        made = cells_of(mesh, split, shape, key, progress, cache, surface.place)
+        made = cells_of(mesh, split, shape, key, progress, cache)
         result = replace(result, mesh=made)
     if settings.makes_polygons:
         result = replace(result, polygons=_polygons(request, mesh, solved, key, progress, cache))
@@ -430,20 +429,16 @@ def _shell(
     width = progress.choose("rib_width", settings.rib_width, RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas)))
     thickness = progress.choose("rib_thickness", settings.rib_thickness, width)
 
-    shape, is_round = RibShape(width, settings.base_height, thickness), settings.rib_profile == "ROUND"
-    place = request.surface.place
-
-    def find(vertices: Reals, triangles: Indices, among: Indices, job: object) -> Indices:
-        return find_crossings(seen_from(place, vertices), triangles, among, job)
+    shape, is_round = RibShape(width, settings.base_height, thickness, request.up), settings.rib_profile == "ROUND"
 
     def build() -> LampShell:
         with progress.stage(0.95, "making the ribs of the lamp shell"):
             ribs = rib_surface(request.surface.name, mesh, solved.cells, shape, progress)
             joined = _hanging_together(request, mesh, solved.cells, ribs, shape, progress)
-        shell = thicken(joined.ribs, thickness, find, progress, is_round)
+        shell = thicken(joined.ribs, thickness, find_crossings, progress, is_round)
         return replace(shell, parts=int(mesh.component_count), added=joined.added)
 
-    return cache.get(("shell", *key, digest(*astuple(shape), is_round, place)), build, lambda shell: shell.nbytes)
+    return cache.get(("shell", *key, digest(*astuple(shape), is_round)), build, lambda shell: shell.nbytes)
 
 
 @dataclass(frozen=True)

@@ -17,13 +17,16 @@ from .fields.darkness import darkness_at, places_by_density
 from .progress import Progress
 from .requests import Voronoi2dRequest, digest
 from .results import CellPolygons, CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
+from .solids.cell_mesh import CellShape
 from .solids.flat_cells import flat_cells
 from .solids.flat_solid import raised_cells
+from .solids.tile_solid import cut_to_tile
 from .surfaces.normals import normals_at
+from .surfaces.plane_frame import FLAT_FRAME, PlaneFrame
 from .surfaces.spaces import Space, space_of
 from .surfaces.surface_places import compact_points
 from .surfaces.sweep import sweep_over
-from .surfaces.tiles import tile_of
+from .surfaces.tiles import Tile, tile_of
 
 
 def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | None = None) -> Voronoi2dResult:
@@ -259,7 +262,7 @@ def _lifted(
     )
     if not request.settings.make_cells:
         return result
-    mesh = cells_of(space.mesh, lifted.split(), shape_of(request.settings), key, progress, cache, request.surface.place)
+    mesh = cells_of(space.mesh, lifted.split(), shape_of(request.settings), key, progress, cache)
     return replace(result, mesh=mesh)
 
 
@@ -290,7 +293,7 @@ def _flat(
         cells = _lifted(request, space, sites, diagram, key, progress, cache)
     elif settings.make_cells:
         with progress.stage(0.95, "shaping the cells") as job:
-            polygons, vanished = _shaped(request, space, diagram, flat, job)
+            polygons, vanished = _shaped(request, space, diagram, flat, count, job)
             polygons = replace(polygons, polygon_cell=polygons.polygon_cell % count)
     sweep = None
     if settings.animate:
@@ -316,20 +319,34 @@ def _centers(request: Voronoi2dRequest, space: Space) -> Reals | None:
 
 
 def _shaped(
-    request: Voronoi2dRequest, space: Space, diagram: Any, flat: FlatCells, job: Any
+    request: Voronoi2dRequest, space: Space, diagram: Any, flat: FlatCells, count: int, job: Any
 ) -> tuple[CellPolygons, int]:
-    """The cells with their gap, thickness and rim; and how many the gap leaves nothing of."""
+    """The cells with their gap, thickness and rim; and how many of the `count` the gap leaves nothing of."""
     settings, threads = request.settings, request.threads
     shape = shape_of(settings)
     if not shape.cuts and shape.thickness == 0:
         return flat, 0
     assert space.frame is not None
-    base = diagram.clip(space.loops, gap=shape.gap, threads=threads, job=job)
-    vanished = len(np.unique(flat.polygon_cell)) - len(np.unique(base.loop_sites))
+    has_rim = shape.inset > 0 and shape.thickness > 0
+    tile = tile_of(space.loops, request.surface.name) if settings.seamless and has_rim else None
+    loops = space.loops if tile is None else [tile.with_neighbors]
+    base = diagram.clip(loops, gap=shape.gap, threads=threads, job=job)
+    vanished = len(np.unique(flat.polygon_cell)) - len(np.unique(base.loop_sites % count))
     if shape.thickness == 0:  # a rim needs a height
         return flat_cells(base, space.frame), vanished
-    plateau = diagram.clip(space.loops, gap=2 * shape.rim_end, threads=threads, job=job) if shape.inset > 0 else None
-    return raised_cells(base, plateau, space.frame, shape), vanished
+    plateau = diagram.clip(loops, gap=2 * shape.rim_end, threads=threads, job=job) if has_rim else None
+    if tile is None:
+        return raised_cells(base, plateau, space.frame, shape), vanished
+    return _repeating(tile, base, plateau, count, space.frame, shape), vanished
+
+
+def _repeating(tile: Tile, base: Any, plateau: Any, count: int, frame: PlaneFrame, shape: CellShape) -> CellPolygons:
+    """Cells whose rims go on at the opposite side: whole ones, cut at the sides of the tile."""
+    whole = raised_cells(base, plateau, FLAT_FRAME, replace(shape, underside=True), count)
+    local = np.column_stack([tile.seen(whole.vertices[:, :2]), whole.vertices[:, 2]])
+    cut = cut_to_tile(replace(whole, vertices=local), tile.size, shape.underside)
+    heights = cut.vertices[:, 2:] * frame.axes[2]
+    return replace(cut, vertices=frame.to_world(tile.shown(cut.vertices[:, :2])) + heights)
 
 
 def _bare_cells(space: Space, sites: _Sites, areas: Reals) -> CellsResult:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import compat, prefs
 from ..bridge.inputs.directions_in import read_directions
-from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons
+from ..bridge.inputs.mesh_in import mesh_of, read_triangle_polygons, up_of, world_axes
 from ..bridge.inputs.voronoi_in import read_uv
 from ..bridge.outputs.out_images import check_images, name_of_image, write_images
 from ..bridge.outputs.output_surface import holder
@@ -140,6 +140,7 @@ def _request(
         tiles=tuple(tiles),
         polygons=polygons,
         directions=_directions(source, mesh, settings, surface, uv),
+        up=up_of(source),
         threads=threads,
     )
 
@@ -160,7 +161,8 @@ def _directions(
     if not settings.bake_direction:
         return None
     vectors = corner_directions(surface, read_directions(source, mesh, settings.direction_attribute))
-    return in_tangents(surface, uv, vectors) if settings.direction_space == "TANGENT" else vectors
+    in_world: Reals = vectors @ world_axes(source).T
+    return in_tangents(surface, uv, vectors) if settings.direction_space == "TANGENT" else in_world
 
 
 def _seen_cells(mesh: bpy.types.Mesh, name: str) -> Indices | None:

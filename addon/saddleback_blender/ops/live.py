@@ -16,6 +16,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import compat, jobs
+from ..bridge.inputs.mesh_in import level_place
 from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_collection import hair
 from ..core.flowing_cells import FlowingCells
@@ -209,7 +210,7 @@ def _show(context: bpy.types.Context, target: Watched) -> None:
     if lines is None or source is None:
         return
     if live.preview is None:
-        live.preview = LivePreview(hair(source))
+        live.preview = LivePreview(level_place(source), hair(source))
     live.preview.show(lines.lines)
     live.has_shown = True
 
@@ -267,8 +268,8 @@ def _begin(context: bpy.types.Context, target: Watched) -> None:
         operator, call = _read(context, target, kind)
         if call is None:
             text = " ".join(operator.errors)
-        elif target.is_accepted or target.seen.get(kind) == operator.content_at_rest:
-            target.seen[kind] = operator.content_at_rest
+        elif target.is_accepted or target.seen.get(kind) == operator.content:
+            target.seen[kind] = operator.content
         else:
             _start(target, operator, call)
             return
@@ -297,7 +298,7 @@ def _write(context: bpy.types.Context, target: Watched, operator: Any) -> None:
         live.is_writing = False
         jobs.state.written.discard(source.name)
     # What was refused is not tried again before a change.
-    target.seen[operator.settings_name] = operator.content_at_rest
+    target.seen[operator.settings_name] = operator.content
     target.is_changed |= len(_kinds(target)) > 1  # others may read what this one wrote
     _drop_preview()
     live.operator = live.target = None

@@ -14,7 +14,7 @@ from .. import jobs
 from ..bridge.inputs.source import Source
 from ..core import runs
 from ..core.progress import Progress
-from ..core.requests import content_at_rest, content_of
+from ..core.requests import content_of
 from ..props import PROPERTIES
 from .base import SurfaceOperator
 from .direction_field import FieldOperator, SADDLEBACK_OT_direction_field
@@ -54,7 +54,7 @@ class Quiet:
         self.properties = SimpleNamespace(is_property_set=lambda _name: False)
         self.options = SimpleNamespace(is_invoke=True, is_repeat=False)
         self.errors: list[str] = []
-        self.content = self.content_at_rest = ""  # of what was read
+        self.content = ""  # of what was read
         self.shape = ""  # of the surface that was read
         self._is_filled, self._others = False, list[str]()
 
@@ -72,7 +72,6 @@ class Quiet:
             self._refuse(error, context)
             return None
         self.content, self.shape = content_of(call), self._source.content
-        self.content_at_rest = content_at_rest(call)
         return call
 
     def start(self, call: Callable[[Progress], Any]) -> None:

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from .. import jobs
-from ..bridge.inputs.mesh_in import from_world, read_surface, read_triangle_polygons
+from ..bridge.inputs.mesh_in import read_surface, read_triangle_polygons, unscaled
 from ..bridge.inputs.source import check_own_mesh, shared_mesh_warning
 from ..bridge.outputs.repair_mesh import apply_repair, polygon_corners
 from ..core.progress import Progress
@@ -91,7 +91,7 @@ def _apply(source: bpy.types.Object, result: RepairResult) -> bool:
     # A vertex left in its place keeps its coordinates to the bit: only the others go through the inverse.
     before = surface.vertices[surface.compact(plan.vertex_origin)]
     moved = np.nonzero(~plan.vertex_is_copy & (before != result.vertices).any(axis=1))[0]
-    places = from_world(source, result.vertices)
+    places = unscaled(source, result.vertices)
     mirrored = source.matrix_world.determinant() < 0
     triangles = result.triangles[:, ::-1] if mirrored else result.triangles
     apply_repair(source, plan, places, moved.astype(np.int32), triangles)

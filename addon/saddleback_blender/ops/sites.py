@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from .. import rollback
-from ..bridge.inputs.mesh_in import from_world
+from ..bridge.inputs.mesh_in import unscaled
 from ..core.errors import BadInputError
 from ..props import existing_group
 from ..props.kept_sites import kept_sites
@@ -37,7 +37,7 @@ class SADDLEBACK_OT_edit_sites(HelperOperator, bpy.types.Operator):
             places = None if group is None else kept_sites(source)
             if group is None or places is None or layer is None:
                 raise BadInputError(f"'{source.name}' has no cells yet whose sites could be edited: press Tessellate")
-            item = _new_points(source, from_world(source, places))
+            item = _new_points(source, unscaled(source, places))
             for name in SETTINGS:
                 rollback.remember_setting(group, name)
             group.sites_source, group.sites_object, group.relax_sites = "OBJECT", item, False

@@ -14,7 +14,7 @@ import numpy as np
 from .. import prefs
 from ..blocks import find
 from ..bridge.inputs.density import read_cell_paint, read_density
-from ..bridge.inputs.mesh_in import mesh_of, read_marks
+from ..bridge.inputs.mesh_in import level_place, mesh_of, read_marks, up_of
 from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_sites
@@ -48,6 +48,7 @@ from ..core.progress import Progress
 from ..core.requests import CellPaint, Surface, TessellateRequest, content_of
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
+from ..core.solids.rib_surface import UPRIGHT
 from ..core.standing import with_anchors
 from ..core.surfaces.inside_out import inside_out_of
 from ..props import existing_group, keep_settings, settings_of
@@ -84,9 +85,10 @@ def read_request(
         settings = replace(settings, count=count_for_parts(surface, settings.count))
     has_mesh = settings.make_cells and not settings.makes_polygons
     marks = read_marks(mesh) if settings.hold_marked or settings.make_dual else None
+    settings = measured(settings, surface, settings.count if sites is None else len(sites))
     return TessellateRequest(
         surface=surface,
-        settings=measured(settings, surface, settings.count if sites is None else len(sites)),
+        settings=settings,
         density=read_density(source, mesh, settings),
         sites=sites,
         marked_edges=marks.edges if marks is not None and settings.hold_marked else None,
@@ -95,6 +97,7 @@ def read_request(
         field=None if settings.stretch == 1.0 else own_field(context, source, mesh, surface),
         threads=prefs.threads(context),
         disk=prefs.disk_cache(context, settings.cache_on_disk),
+        up=up_of(source) if settings.make_shell and settings.base_height > 0.0 else UPRIGHT,
     )
 
 
@@ -232,7 +235,7 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
 
     def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
         """Begins to show the cells."""
-        self._preview = LivePreview(hair(source))
+        self._preview = LivePreview(level_place(source), hair(source))
         self._has_news = False
         if self._live.stays:
             bpy.app.handlers.depsgraph_update_post.append(self._note)

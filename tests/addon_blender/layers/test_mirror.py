@@ -66,7 +66,7 @@ def surfaces(mesh):
 
 @pytest.mark.parametrize("place", list(PLACES))
 def test_cells_are_mirrored_to_the_bit(place):
-    item = creature()
+    item = creature(levels=2)
     item.matrix_world = PLACES[place]
     bpy.ops.saddleback.tessellate(
         count=120, mirror_x=True, make_cells=True, make_centers=True, gap=0.01, thickness=0.02, inset=0.01,

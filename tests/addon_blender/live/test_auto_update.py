@@ -209,7 +209,7 @@ def test_what_was_made_goes_with_the_object_and_is_not_made_again(item, monkeypa
     assert began(lambda: setattr(item, "scale", (1.0, 2.0, 1.0)))
     assert began(lambda: setattr(item.saddleback.tessellate, "make_shell", True))
     assert not began(lambda: setattr(item, "rotation_euler", (0.0, 0.0, 0.0)))
-    assert began(lambda: setattr(item.saddleback.tessellate, "base_height_share", 20.0))  # above its lowest point
+    assert began(lambda: setattr(item.saddleback.tessellate, "base_height", 0.2))  # above its lowest point
     assert began(lambda: setattr(item, "rotation_euler", (0.5, 0.0, 0.0)))
 
 

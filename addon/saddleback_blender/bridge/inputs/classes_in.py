@@ -22,6 +22,7 @@ from ..outputs.out_collection import find_output
 from ..outputs.out_shapes import INSTANCES_ROLE
 from .density import read_attribute, read_vertex_group
 from .directions_in import read_directions
+from .mesh_in import level_place
 from .shapes_in import items_of
 
 DENSITY, DIRECTION, SIZE = "density", "direction", "size"  # custom properties of a shape's object
@@ -116,7 +117,7 @@ def read_kept(
             f"'{source.name}': some of the shapes to keep are of a class that is no longer there; delete them, or "
             "switch Keep off"
         )
-    matrix = np.array(item.matrix_world, np.float64)
+    matrix = np.linalg.solve(*(np.array(place, np.float64) for place in (level_place(source), item.matrix_world)))
     points = compat.read_positions(mesh).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     x, z = (_units(axes @ matrix[:3, :3].T) for axes in axes_of(_column(mesh, nodes.ROTATION_ATTRIBUTE, 3)))
     y = np.cross(z, x)

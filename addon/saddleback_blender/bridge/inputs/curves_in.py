@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curve objects -> polylines in the world."""
+"""Curve objects -> polylines."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -16,13 +18,15 @@ from ...core.solids.edge_chains import chains
 from ...nodes import CURVE_TUBES, modifier_of
 from ..tokens import SOURCE
 from .evaluated import evaluated
-from .mesh_in import to_world
+from .mesh_in import seen_by, to_world
 
 
 def read_curves(
     source: bpy.types.Object, name: str, collection: str, purpose: str = "to measure from"
 ) -> tuple[Polyline, ...]:
-    """The splines of one curve object, of all in a collection or, without either, of those parented to the source."""
+    """The splines of one curve object, of all in a collection or, without either, of those parented to the source, as
+    its surface has them.
+    """
     items, where = _curve_objects(source, name, collection, purpose)
     lines = tuple(line for item in items for line in polylines_of(item))
     if not lines:
@@ -30,7 +34,7 @@ def read_curves(
     for line in lines:
         if not np.isfinite(line.points).all():
             raise BadInputError(f"'{source.name}': {where} has a point that is not at a finite place; move it")
-    return lines
+    return tuple(replace(line, points=seen_by(source, line.points)) for line in lines)
 
 
 def _curve_objects(
@@ -66,7 +70,7 @@ def is_curve(item: bpy.types.Object) -> bool:
 
 
 def polylines_of(item: bpy.types.Object) -> list[Polyline]:
-    """The splines of a curve object as Blender draws them without bevel, its modifiers included."""
+    """In the world: the splines of a curve object as Blender draws them without bevel, its modifiers included."""
     return _hair_lines(item) if item.type == "CURVES" else _splines(item)
 
 

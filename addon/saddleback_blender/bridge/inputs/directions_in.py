@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vector attributes and flow maps -> directions in the world."""
+"""Vector attributes and flow maps -> directions as the surface has them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ...core.results import Reals
 from ...core.settings import DirectionFieldSettings
 from ..outputs.out_field import SYMMETRY
 from .density import colors_of_tiles, to_vertices
-from .mesh_in import read_triangle_polygons, to_world
+from .mesh_in import read_triangle_polygons, scale_of, scaled
 from .voronoi_in import read_triangle_corners
 
 INSTEAD = "choose another field"
@@ -52,7 +52,7 @@ def read_directions(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -
         )
     own = np.empty(3 * len(attribute.data), np.float32)
     attribute.data.foreach_get("vector", own)
-    vectors = own.reshape(-1, 3).astype(np.float64) @ np.array(source.matrix_world, np.float64)[:3, :3].T
+    vectors = own.reshape(-1, 3).astype(np.float64) @ scale_of(source).T
     polygons = None
     if attribute.domain == "FACE":
         polygons = read_triangle_polygons(mesh)
@@ -98,7 +98,7 @@ def _uv_places(source: bpy.types.Object, mesh: bpy.types.Mesh) -> Reals:
 
 def _flow(source: bpy.types.Object, mesh: bpy.types.Mesh, colors: Reals, label: str) -> GivenDirections:
     corners, polygons = read_triangle_corners(mesh), read_triangle_polygons(mesh)
-    places = to_world(source, compat.read_positions(mesh))[compat.read_corner_vertices(mesh)[corners]]
+    places = scaled(source, compat.read_positions(mesh))[compat.read_corner_vertices(mesh)[corners]]
     uv = _uv_places(source, mesh)[corners.ravel()]
     vectors = flow_of_polygons(places, uv, colors[corners.ravel()], polygons)
     return GivenDirections(vectors, 1, label, polygons)

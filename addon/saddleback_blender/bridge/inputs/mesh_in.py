@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh -> the arrays of a surface, in world space."""
+"""A Blender mesh -> the arrays of a surface, as seen from where its object stands."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -13,12 +14,15 @@ from numpy.typing import NDArray
 
 from ... import compat
 from ...core.errors import BadInputError
-from ...core.requests import Surface, digest
+from ...core.requests import Direction, Surface
 from ...core.results import EdgeMarks, Indices, Reals
 from ...core.solids.mesh_edges import edge_keys
 from ...core.surfaces.parts import NO_EDGES, lonely_edge, part
-from ...core.surfaces.seen_places import seen_from
 from .evaluated import evaluated
+
+NOISE_BITS = 46  # what is below so many of the largest number's is rounding
+SCALE_DIGITS = 5  # that a scale has which somebody typed
+SCALE_ROUNDING = 5e-7  # of the largest number of a transform, what Blender's single precision may leave
 
 
 @contextmanager
@@ -49,13 +53,14 @@ def read_surface(
     is_inside: NDArray[np.bool_] | None = None,
     barriers: Indices = NO_EDGES,
 ) -> Surface:
-    """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles.
+    """The surface of `mesh` as `source` scales it, seen from `level_place`: polygons are cut into triangles.
 
+    So it is the same to the bit wherever the object stands and however it is turned, and so is what is made of it.
     With `is_inside` (polygons,) it is a part of that, and it is parted along `barriers` (n, 2), edges of the mesh.
     Raises BadInputError for a mesh without faces, a barrier that parts nothing and, with `check`, for coordinates that
     are not finite.
     """
-    vertices = to_world(source, compat.read_positions(mesh))
+    vertices = scaled(source, compat.read_positions(mesh))
     if check and not np.isfinite(vertices).all():
         vertex = int(np.nonzero(~np.isfinite(vertices).all(axis=1))[0][0])
         raise BadInputError(f"'{source.name}': vertex {vertex} is not at a finite place; delete it or press Repair")
@@ -84,18 +89,7 @@ def read_surface(
     used, triangles = _compact(triangles, count + len(copied))
     if len(copied):
         used = np.concatenate([np.arange(count, dtype=np.int32), copied])[slice(None) if used is None else used]
-    place = np.array(level_place(source), np.float64)
-    return Surface(
-        source.name, vertices if used is None else vertices[used], triangles, count, used, kept,
-        shape=_shape(source, mesh, place), place=place,
-    )  # fmt: skip
-
-
-def _shape(source: bpy.types.Object, mesh: bpy.types.Mesh, place: Reals) -> str:
-    """Names what the mesh and the object's scale make, to as many digits as stay when it is turned."""
-    scale = (np.linalg.inv(place) @ np.array(source.matrix_world, np.float64))[:3, :3]
-    largest = np.abs(scale).max()
-    return digest(compat.read_positions(mesh), f"{largest:.5g}", np.round(scale / largest, 5) + 0.0)
+    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used, kept)
 
 
 def read_triangles(mesh: bpy.types.Mesh) -> Indices:
@@ -165,21 +159,78 @@ def _unit(vectors: Reals) -> Reals:
 
 
 def level_place(source: bpy.types.Object) -> Matrix:
-    """The source's place and turn without its scale, so that round tubes and instances stay round."""
+    """The source's place and turn without its scale: from here surfaces are seen, and round tubes stay round."""
     location, rotation, _ = source.matrix_world.decompose()
     place: Matrix = Matrix.Translation(location) @ rotation.to_matrix().to_4x4()
     return place
 
 
-def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
-    """(n, 3) object-space positions -> world space, in double precision."""
-    matrix = np.array(source.matrix_world, np.float64)
+def scale_of(source: bpy.types.Object) -> Reals:
+    """(3, 3) what the object's transform does to its mesh beside `level_place`: scale, and the shear of parents.
+
+    Blender's matrices are rounded to single precision, each turn to others. Within that these are numbers of few digits
+    where they are it, or else the object's own scale where no parent has one.
+    """
+    matrix, place = (np.array(matrix, np.float64)[:3, :3] for matrix in (source.matrix_world, level_place(source)))
+    scale: Reals = np.asarray(np.linalg.solve(place, matrix), np.float64)
+    largest = float(np.abs(scale).max())
+    if not 0.0 < largest < np.inf:
+        return scale
+    digits = SCALE_DIGITS - math.ceil(math.log10(largest))
+    own: Reals = np.diag(np.copysign(np.array(source.scale, np.float64), np.diag(scale)))
+    for exact in (np.round(scale, digits) + 0.0, own):
+        if np.abs(exact - scale).max() <= SCALE_ROUNDING * largest:
+            return exact
+    return scale
+
+
+def scaled(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
+    """(n, 3) positions in the object's space -> as its surface has them, in double precision."""
+    places: Reals = positions.astype(np.float64) @ scale_of(source).T
+    return places
+
+
+def unscaled(source: bpy.types.Object, points: Reals) -> Reals:
+    """(n, 3) points of the surface -> the object's own space."""
+    frame = np.eye(4)
+    frame[:3, :3] = scale_of(source)
+    return _seen_from(frame, points)
+
+
+def to_world(item: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
+    """(n, 3) positions in an object's space -> the world, in double precision."""
+    matrix = np.array(item.matrix_world, np.float64)
     return positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def from_world(source: bpy.types.Object, points: Reals) -> Reals:
-    """(n, 3) world space -> the object's own space."""
-    return seen_from(np.array(source.matrix_world, np.float64), points)
+def seen_by(source: bpy.types.Object, points: Reals) -> Reals:
+    """(n, 3) places in the world -> as the object's surface has them."""
+    return _seen_from(np.array(level_place(source), np.float64), points)
+
+
+def world_axes(source: bpy.types.Object) -> Reals:
+    """(3, 3) rows are the axes of the world as the object's surface has them."""
+    return np.array(level_place(source), np.float64)[:3, :3]
+
+
+def up_of(source: bpy.types.Object) -> Direction:
+    """The world's Z as the object's surface has it."""
+    x, y, z = world_axes(source)[2].tolist()
+    return x, y, z
+
+
+def _seen_from(frame: Reals, points: NDArray[np.floating]) -> Reals:
+    """Positions (n, 3) as seen from a frame (4, 4), without the noise of rounding.
+
+    So what lies at 0 is at 0, and what is mirrored there is so in single precision to the bit.
+    """
+    inverse = np.linalg.inv(frame)
+    seen: Reals = points @ inverse[:3, :3].T + inverse[:3, 3]
+    size = np.abs(inverse[:3, :3]).max() * max(np.abs(points).max(initial=0.0), np.abs(frame[:3, 3]).max())
+    if not 0.0 < size < np.inf:
+        return seen
+    noise = 2.0 ** (np.floor(np.log2(size)) - NOISE_BITS)
+    return np.asarray(np.rint(seen / noise) * noise)
 
 
 def _all_triangles(mesh: bpy.types.Mesh) -> bool:

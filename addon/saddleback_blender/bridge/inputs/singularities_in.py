@@ -12,6 +12,7 @@ from ...core.requests import SingularPlace
 from ...core.results import Reals
 from ...core.settings import DirectionFieldSettings
 from .evaluated import places_of
+from .mesh_in import seen_by
 
 INDEX = "index"  # custom property of an empty: a number, or a text like "-1/2"
 
@@ -33,7 +34,7 @@ def read_singularities(
     empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name_full)
     if not empties:
         raise BadInputError(f"'{source.name}': no empty is {where}; add one at each place that the field turns about")
-    places = places_of(context, empties)
+    places = seen_by(source, places_of(context, empties))
     return tuple(_singular_place(source, item, place) for item, place in zip(empties, places, strict=True))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads where cells are centered, and distances and paths begin: vertices chosen or painted, objects, curves, the
-cursor.
+cursor. Places are as the surface has them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...core.settings import DistanceSettings, PathSettings, TessellateSettings
 from .curves_in import read_curves
 from .density import read_vertex_group
 from .evaluated import places_of
-from .mesh_in import modified, to_world
+from .mesh_in import modified, scaled, seen_by, to_world
 
 
 def read_sites(
@@ -44,7 +44,7 @@ def read_sources(
     if settings.sources == "CURVES":
         return read_curves(source, settings.sources_object, settings.sources_collection)
     if settings.sources in ("CURSOR", "CURSOR_PARTS"):
-        return cursor_point(context)
+        return cursor_point(context, source)
     vertices = selected_vertices(source, mesh)
     return _some(
         source, mesh, vertices, "selected, so all distances are 0; select fewer in Edit Mode, or choose the 3D Cursor"
@@ -57,7 +57,7 @@ def read_path_points(
     """Returns what paths run through, in order."""
     points: Points
     if settings.points == "CURSOR":
-        return cursor_point(context)
+        return cursor_point(context, source)
     if settings.points == "VERTEX_GROUP":
         points = group_vertices(source, mesh, settings.points_group, "choose other points")
         points = _some(source, mesh, points, "in the group, and a path leads from point to point; choose fewer")
@@ -74,8 +74,8 @@ def read_path_points(
     if not settings.from_cursor:
         return points
     if points.ndim == 1:
-        points = to_world(source, compat.read_positions(mesh)[points])
-    return np.concatenate([cursor_point(context), points])
+        points = scaled(source, compat.read_positions(mesh)[points])
+    return np.concatenate([cursor_point(context, source), points])
 
 
 def _some(source: bpy.types.Object, mesh: bpy.types.Mesh, vertices: NDArray[np.int32], what: str) -> NDArray[np.int32]:
@@ -94,9 +94,9 @@ def group_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, ot
     return vertices
 
 
-def cursor_point(context: bpy.types.Context) -> Reals:
+def cursor_point(context: bpy.types.Context, source: bpy.types.Object) -> Reals:
     """(1, 3) place of the 3D cursor."""
-    return np.array([context.scene.cursor.location[:]], np.float64)
+    return seen_by(source, np.array([context.scene.cursor.location[:]], np.float64))
 
 
 def selected_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray[np.int32]:
@@ -108,7 +108,7 @@ def selected_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray
 
 
 def object_points(context: bpy.types.Context, source: bpy.types.Object, name: str) -> Reals:
-    """(n, 3) world places of another mesh object's vertices, as its modifiers leave them."""
+    """(n, 3) places of another mesh object's vertices, as its modifiers leave them."""
     other = find(bpy.data.objects, name)
     if other is None:
         raise BadInputError(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
@@ -117,7 +117,7 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
     if other.type != "MESH":
         raise BadInputError(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
     with modified(context, other) as (shown, mesh):
-        points = to_world(shown, compat.read_positions(mesh))
+        points = seen_by(source, to_world(shown, compat.read_positions(mesh)))
     if not len(points):
         raise BadInputError(
             f"'{name}' has no vertices, so '{source.name}' cannot take sites from it; choose another object"
@@ -128,7 +128,7 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
 def empty_points(
     context: bpy.types.Context, source: bpy.types.Object, collection: str, purpose: str = "to measure from"
 ) -> Reals:
-    """(n, 3) world places of the empties in a collection or, without one, of those parented to the object."""
+    """(n, 3) places of the empties in a collection or, without one, of those parented to the object."""
     if collection:
         group = find(bpy.data.collections, collection)
         if group is None:
@@ -142,4 +142,4 @@ def empty_points(
     empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name_full)
     if not empties:
         raise BadInputError(f"'{source.name}': no empty is {where}; add one at each place {purpose}")
-    return places_of(context, empties)
+    return seen_by(source, places_of(context, empties))

@@ -13,7 +13,7 @@ import numpy as np
 from ... import compat
 from ...blocks import is_editable
 from ...core.errors import BadInputError
-from .mesh_in import mesh_of
+from .mesh_in import mesh_of, scale_of
 
 # Share of the volume of its edge lengths below which a transform's parallelepiped counts as flat.
 FLAT_TRANSFORM = 1e-9
@@ -117,8 +117,8 @@ class Source:
 
 
 def _content(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> str:
-    """A hash of what a run reads of the shape: places, counts and transform."""
-    digest = hashlib.blake2b(np.array(source.matrix_world, np.float64).tobytes(), digest_size=16)
+    """A hash of what a run reads of the shape: places, counts and scale."""
+    digest = hashlib.blake2b(scale_of(source).tobytes(), digest_size=16)
     with mesh_of(context, source, use_modifiers) as mesh:
         digest.update(f"{len(mesh.vertices)} {len(mesh.loops)} {len(mesh.polygons)}".encode())
         digest.update(compat.read_positions(mesh).data)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Strokes that a field shall follow: annotations, grease pencil, curves -> lines in the world."""
+"""Strokes that a field shall follow: annotations, grease pencil, curves -> lines."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -16,7 +17,7 @@ from ...core.settings import DirectionFieldSettings
 from ..tokens import SOURCE
 from .curves_in import is_curve, polylines_of
 from .evaluated import evaluated
-from .mesh_in import to_world
+from .mesh_in import seen_by, to_world
 
 HARD = "hard"  # a word of the name of a layer or object: its strokes are met exactly
 
@@ -24,7 +25,7 @@ HARD = "hard"  # a word of the name of a layer or object: its strokes are met ex
 def read_strokes(
     context: bpy.types.Context, source: bpy.types.Object, settings: DirectionFieldSettings
 ) -> tuple[StrokeLine, ...]:
-    """The chosen strokes of two places or more. Raises BadInputError where there are none."""
+    """The chosen strokes of two places or more, as the surface has them. Raises BadInputError where there are none."""
     if settings.strokes == "NONE":
         return ()
     if settings.strokes == "ANNOTATIONS":
@@ -39,7 +40,7 @@ def read_strokes(
     for line in lines:
         if not np.isfinite(line.points).all():
             raise BadInputError(f"'{source.name}': {line.label} has a point that is not at a finite place; move it")
-    return tuple(lines)
+    return tuple(replace(line, points=seen_by(source, line.points)) for line in lines)
 
 
 def _of_annotations(scene: bpy.types.Scene) -> list[StrokeLine]:

@@ -81,11 +81,11 @@ def _weights(item: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> Reals |
 
 
 def read_circles(context: bpy.types.Context, source: bpy.types.Object, settings: Voronoi2dSettings) -> Reals | None:
-    """(m, 3) world places that a sweep's circles grow from; None where they are to be placed."""
+    """(m, 3) places that a sweep's circles grow from; None where they are to be placed."""
     if not settings.animate or settings.circles not in ("CURSOR", "EMPTIES"):
         return None
     if settings.circles == "CURSOR":
-        return cursor_point(context)
+        return cursor_point(context, source)
     return empty_points(context, source, settings.circles_collection, "to grow a circle from")
 
 

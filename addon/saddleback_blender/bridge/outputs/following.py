@@ -28,7 +28,7 @@ from ...follow_nodes import (
     Known,
     set_following,
 )
-from ..inputs.mesh_in import mesh_of, read_vertex_normals
+from ..inputs.mesh_in import mesh_of, read_vertex_normals, scale_of
 from ..tokens import NAME, ROLE
 from .out_attributes import set_attribute
 from .out_collection import KEEPER_ENDING, find_output, mark, remove_object
@@ -66,10 +66,10 @@ class Follower:
         feet: Reals | None = None,
         rotations: Reals | None = None,
     ) -> None:
-        """Lets an output follow whose points (n, 3), in the world, stand on the surface at their `feet` (n, 3).
+        """Lets an output follow whose points (n, 3) stand on the surface at their `feet` (n, 3).
 
-        `place` is the world matrix that the output was made for, and `rotations` (n, 3) are Euler angles as seen from
-        there, of what is put on the points.
+        `place` is the world matrix that the output was made for, and `rotations` (n, 3) are the Euler angles of what is
+        put on the points.
         """
         self.take_anchored(item, place, self._ground.anchors(points, feet, runs.new_progress()), rotations)
 
@@ -87,9 +87,7 @@ class Follower:
         is_shifted = bool(np.abs(anchors.offset).max(initial=0.0) > ON_SURFACE * extent)
         vectors = {SHIFT_ATTRIBUTE: anchors.offset} if is_shifted else {}
         if rotations is not None:
-            turn = np.array(place.to_3x3(), np.float64)
-            for name, axis in zip((X_ATTRIBUTE, Z_ATTRIBUTE), axes_of(rotations), strict=True):
-                vectors[name] = axis @ turn.T
+            vectors |= zip((X_ATTRIBUTE, Z_ATTRIBUTE), axes_of(rotations), strict=True)
         # All that is read, before anything is written: Blender would evaluate what was made so far each time.
         rest, frames = self._rest, self._frames(anchors) if vectors else None
         _remove_keeper(self._source, item)
@@ -110,11 +108,10 @@ class Follower:
             write_rest(mesh, self._rest.places, anchors.corners, anchors.barycentric, bool(vectors))
 
     def _frames(self, anchors: Anchors) -> Reals:
-        """(n, 3, 3) axes, in the world, of the surface where points stand, as the node group finds them."""
+        """(n, 3, 3) axes of the surface where points stand, as the node group finds them."""
         first, second = (self._surface.vertices[self._surface.compact(anchors.corners[:, i])] for i in range(2))
         normals = np.einsum("ni,nij->nj", anchors.barycentric, self._normals[anchors.corners])
-        into_world = np.linalg.inv(np.array(self._source.matrix_world.to_3x3(), np.float64))
-        return frames_along(second - first, normals @ into_world)
+        return frames_along(second - first, normals @ np.linalg.inv(scale_of(self._source)))
 
     @cached_property
     def _normals(self) -> Reals:

@@ -24,11 +24,11 @@ shown: list[LivePreview] = []  # those that draw
 
 
 class LivePreview:
-    """Lines in the world. `remove` must be called."""
+    """Lines as seen from `place`. `remove` must be called."""
 
-    def __init__(self, hair: float) -> None:
+    def __init__(self, place: Matrix, hair: float) -> None:
         self.ends: NDArray[np.float32] = np.empty((0, 3), np.float32)  # two for each piece
-        self._lift = LIFT * hair
+        self._place, self._lift = place, LIFT * hair
         self._batch: Any = None
         self._handler = (
             None
@@ -65,7 +65,7 @@ class LivePreview:
         gpu.state.depth_test_set("LESS_EQUAL")
         gpu.state.blend_set("ALPHA")
         with gpu.matrix.push_pop():
-            gpu.matrix.multiply_matrix(Matrix.Translation(to_eye))
+            gpu.matrix.multiply_matrix(Matrix.Translation(to_eye) @ self._place)
             shader.bind()
             shader.uniform_float("color", COLOR)
             shader.uniform_float("lineWidth", WIDTH)

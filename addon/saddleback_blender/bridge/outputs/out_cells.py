@@ -24,7 +24,7 @@ from ..inputs.mesh_in import level_place, mesh_of
 from .carried_out import write_groups, write_layers
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 
 CELLS_ROLE = "cells"
 CELL_ATTRIBUTE = "saddleback_cell"
@@ -54,7 +54,7 @@ def write_cells(
     dome = settings.dome if isinstance(settings, TessellateSettings) else 0.0
     is_smooth = dome > 0.0 or compat.is_shaded_smooth(source.data)
     crease = (DOME_ANGLE if dome == 1.0 else CREASE_ANGLE) if is_smooth else None
-    mesh = _mesh(to_place(place, cells.vertices), cells, colors, crease)
+    mesh = _mesh(cells.vertices, cells, colors, crease)
     if isinstance(settings, TessellateSettings) and settings.local_uv:
         places = local_uv(
             cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal
@@ -77,7 +77,7 @@ def write_polygons(
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object from polygons; `neighbors` (e, 2) get colors unlike each other."""
     place = level_place(source)
-    mesh = _new_mesh(to_place(place, cells.vertices))
+    mesh = _new_mesh(cells.vertices)
     compat.write_polygons(mesh, cells.corners, cells.offsets)
     colors = cell_colors(count, neighbors)
     compat.shade_flat(mesh)
@@ -103,7 +103,7 @@ def _write_surface_polygons(
     cells = result.polygons
     assert cells is not None
     place, counts = level_place(source), np.diff(cells.offsets)
-    mesh = _new_mesh(to_place(place, cells.vertices))
+    mesh = _new_mesh(cells.vertices)
     compat.write_polygons(mesh, cells.corners, cells.offsets)
     mesh.update(calc_edges=True)
     with mesh_of(context, source, settings.use_modifiers) as read:

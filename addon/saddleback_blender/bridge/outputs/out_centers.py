@@ -15,7 +15,7 @@ from ...core.surfaces.centers import euler_to_normal, instance_size
 from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import directions_to_place, find_output, hair, replace_object, to_place
+from .out_collection import find_output, hair, replace_object
 
 CENTERS_ROLE = "centers"
 CELL_ATTRIBUTE, AREA_ATTRIBUTE = "saddleback_cell", "saddleback_area"
@@ -44,13 +44,12 @@ def write_centers(
         mesh.materials.append(nodes.dots_material())
         points = points + hair(source) * result.sites_normal
     mesh.vertices.add(count)
-    mesh.vertices.foreach_set("co", to_place(place, points).astype(np.float32).ravel())
-    normal = directions_to_place(place, result.sites_normal)
-    rotations = euler_to_normal(normal)
+    mesh.vertices.foreach_set("co", points.astype(np.float32).ravel())
+    rotations = euler_to_normal(result.sites_normal)
     columns: dict[str, np.ndarray] = {
         CELL_ATTRIBUTE: np.arange(count, dtype=np.int32),
         AREA_ATTRIBUTE: result.cell_area,
-        nodes.NORMAL_ATTRIBUTE: normal,
+        nodes.NORMAL_ATTRIBUTE: result.sites_normal,
         nodes.SIZE_ATTRIBUTE: instance_size(result.cell_area, result.sites_tone, settings.instance_size),
         nodes.ROTATION_ATTRIBUTE: rotations,
     }

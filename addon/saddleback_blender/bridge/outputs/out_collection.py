@@ -17,7 +17,6 @@ from mathutils import Matrix
 
 from ... import nodes, rollback
 from ...blocks import is_editable
-from ...core.surfaces.seen_places import seen_from
 from ...follow_nodes import follows
 from ..tokens import (
     LAYER,
@@ -152,16 +151,6 @@ def hair(source: bpy.types.Object) -> float:
     In the space of outputs, too, whose scale is 1.
     """
     return HAIR * float(max(source.dimensions))
-
-
-def to_place(place: Matrix, positions: np.ndarray) -> np.ndarray:
-    """World positions (n,3) as seen from an object whose world matrix is `place`."""
-    return seen_from(np.array(place, np.float64), positions)
-
-
-def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
-    """World directions (n,3) as seen from an object whose world matrix is `place`, a turn without scale."""
-    return directions @ np.array(place, np.float64)[:3, :3]
 
 
 def outputs_of(source: bpy.types.Object, layer: str | None = None) -> list[bpy.types.Object]:

@@ -15,7 +15,7 @@ from ...core.results import PathsResult, Reals
 from ...core.solids.level_lines import LevelLines
 from ..inputs.mesh_in import level_place
 from .following import Follower
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 
 ISOLINES_ROLE, PATHS_ROLE = "isolines", "paths"
 LENGTH = "saddleback_length"  # custom property of the paths object: the sum of their lengths, world units
@@ -61,7 +61,7 @@ def write_lines(
     `feet` (n, 3) are where the points stand on the surface, where that is not where they are.
     """
     place = level_place(source)
-    curve = _new_curve(f"Saddleback {role.title()}", to_place(place, lines.points), lines.parts)
+    curve = _new_curve(f"Saddleback {role.title()}", lines.points, lines.parts)
     curve.materials.append(material)
     item = replace_object(context, source, role, curve, place)
     if radius > 0:

@@ -12,7 +12,7 @@ from ...core.settings import TessellateSettings
 from ...looks import NO_LOOK
 from ..inputs.carried_in import read_carried
 from ..inputs.materials_in import shown_materials
-from ..inputs.mesh_in import from_world, mesh_of, write_marks
+from ..inputs.mesh_in import mesh_of, unscaled, write_marks
 from .carried_out import in_written_order, write_groups, write_layers
 from .following import Follower
 from .out_collection import replace_object
@@ -58,7 +58,7 @@ def write_dual(
 def _mesh(source: bpy.types.Object, dual: Dual) -> bpy.types.Mesh:
     mesh = bpy.data.meshes.new("Saddleback Dual")
     mesh.vertices.add(len(dual.vertices))
-    compat.write_positions(mesh, from_world(source, dual.vertices).astype(np.float32))
+    compat.write_positions(mesh, unscaled(source, dual.vertices).astype(np.float32))
     is_mirrored = source.matrix_world.determinant() < 0
     polygons = dual.polygons[:, ::-1] if is_mirrored else dual.polygons
     count, sides = polygons.shape

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import bpy
 import numpy as np
 
@@ -15,7 +13,7 @@ from ...core.solids.edge_network import EdgeNetwork, edge_network, long_lines
 from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 from .out_curves import Lines, write_lines
 
 EDGES_ROLE = "edges"
@@ -53,7 +51,7 @@ def write_network(
         lines = Lines.of((network.vertices[vertices], is_closed) for vertices, is_closed in long_lines(network))
         return write_lines(context, source, role, lines, settings.edge_radius, material, follower)
     place = level_place(source)
-    data = _edge_mesh(replace(network, vertices=to_place(place, network.vertices)))
+    data = _edge_mesh(network)
     data.materials.append(material)
     item = replace_object(context, source, role, data, place)
     nodes.set_tubes(item, settings.edge_radius, material)

@@ -9,10 +9,10 @@ import numpy as np
 from ... import compat, nodes
 from ...core.fields.arrow_mesh import arrow_mesh
 from ...core.results import FieldResult, Reals
-from ..inputs.mesh_in import level_place
+from ..inputs.mesh_in import level_place, scale_of
 from .following import Follower
 from .out_attributes import write_attributes
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 from .out_curves import Lines, write_lines
 
 ARROWS_ROLE, STREAMLINES_ROLE = "arrows", "streamlines"
@@ -35,7 +35,7 @@ def write_arrows(
     arrows = arrow_mesh(result)
     mesh = bpy.data.meshes.new("Saddleback Arrows")
     mesh.vertices.add(len(arrows.vertices))
-    mesh.vertices.foreach_set("co", to_place(place, arrows.vertices).astype(np.float32).ravel())
+    mesh.vertices.foreach_set("co", arrows.vertices.astype(np.float32).ravel())
     compat.write_polygons(mesh, arrows.corners, arrows.offsets)
     compat.write_numbers(mesh.polygons, "material_index", arrows.materials)
     mesh.polygons.foreach_set("use_smooth", arrows.smooth.astype(bool))
@@ -62,9 +62,8 @@ def write_streamlines(
 
 
 def _own_directions(source: bpy.types.Object, directions: Reals) -> Reals:
-    """World directions as seen from the source, of unit length; zero stays zero."""
-    matrix = np.array(source.matrix_world, np.float64)[:3, :3]
-    own = directions @ np.linalg.inv(matrix).T
+    """Directions as the source's own space has them, of unit length; zero stays zero."""
+    own = directions @ np.linalg.inv(scale_of(source)).T
     lengths = np.linalg.norm(own, axis=1, keepdims=True)
     units: Reals = np.divide(own, lengths, out=np.zeros_like(own), where=lengths > 0)
     return units

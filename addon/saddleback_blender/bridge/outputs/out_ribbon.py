@@ -13,7 +13,7 @@ from ...core.shapes.shape_templates import Picture
 from ...image_materials import image_material
 from ..inputs.mesh_in import level_place
 from .following import Follower
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 from .out_shapes import UV_NAME, fill, materials_of
 
 RIBBON_ROLE = "ribbon"
@@ -30,7 +30,7 @@ def write_ribbon(
     """Makes or replaces the source's ribbon object, which follows the source."""
     place, solid = level_place(source), result.solid
     mesh = bpy.data.meshes.new("Saddleback Ribbon")
-    fill(mesh, to_place(place, solid.vertices), solid.corners, solid.offsets, solid.uv, solid.smooth)
+    fill(mesh, solid.vertices, solid.corners, solid.offsets, solid.uv, solid.smooth)
     for material in _materials(settings, picture, bool((result.repeats > 1).any())):
         mesh.materials.append(material)
     compat.write_numbers(mesh.polygons, "material_index", solid.material)

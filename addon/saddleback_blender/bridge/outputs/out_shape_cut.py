@@ -20,7 +20,7 @@ from ..inputs.mesh_in import level_place, mesh_of
 from .carried_out import write_groups
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 from .out_shapes import RANDOM_ATTRIBUTE, SHAPE_ATTRIBUTE, SHAPE_UV, add_materials
 
 CUT_ROLE = "shape cut"
@@ -44,7 +44,7 @@ def write_cut(
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Cut")
     mesh.vertices.add(len(cut.vertices))
-    compat.write_positions(mesh, to_place(place, cut.vertices).astype(np.float32))
+    compat.write_positions(mesh, cut.vertices.astype(np.float32))
     compat.write_corners(mesh, cut.triangles)
     mesh.update(calc_edges=True)
     with mesh_of(context, source, settings.use_modifiers) as read:

@@ -15,7 +15,7 @@ from ...core.results import Anchors, DistributeResult, Indices, PlacedShapes, Re
 from ...core.settings import DistributeSettings
 from ...core.shapes.shape_colors import palette_colors, random_of, shape_colors
 from ...core.shapes.shape_templates import ShapeTemplate
-from ...core.surfaces.quaternions import axes_of, euler_of, quaternions_of, turned
+from ...core.surfaces.quaternions import axes_of, euler_of, turned
 from ...finishes import material_of, palette_of
 from ...follow_nodes import WEIGHTS_ATTRIBUTE, stop_following
 from ...image_materials import image_material
@@ -28,12 +28,10 @@ from .following import Follower
 from .hand_edits import make_ordinary
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
-    directions_to_place,
     mark,
     outputs_of,
     remove_object,
     replace_object,
-    to_place,
 )
 from .out_curves import Lines, write_lines
 
@@ -62,7 +60,7 @@ def write_bent(
     assert bent is not None
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
-    fill(mesh, to_place(place, bent.vertices), bent.corners, bent.offsets, bent.uv, bent.smooth)
+    fill(mesh, bent.vertices, bent.corners, bent.offsets, bent.uv, bent.smooth)
     random = random_numbers(result, settings.seed)
     set_attribute(mesh, SHAPE_ATTRIBUTE, "FACE", bent.polygon_copy)
     set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
@@ -100,8 +98,8 @@ def write_instances(
     scales = placed.scales * units * np.array([template.own_scale for template in own]).reshape(-1, 3)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
     mesh.vertices.add(len(points))
-    mesh.vertices.foreach_set("co", to_place(place, points).astype(np.float32).ravel())
-    rotations = euler_of(_to_place(place, placed.rotations))
+    mesh.vertices.foreach_set("co", points.astype(np.float32).ravel())
+    rotations = euler_of(placed.rotations)
     columns = {
         nodes.CLASS_ATTRIBUTE: placed.shape,
         nodes.ROTATION_ATTRIBUTE: rotations,
@@ -308,10 +306,3 @@ def materials_of(item: bpy.types.Object | None) -> list[bpy.types.Material | Non
         return []
     with modified(bpy.context, item) as (shown, mesh):
         return shown_materials(shown, mesh)
-
-
-def _to_place(place: object, rotations: Reals) -> Reals:
-    """The turns as seen from an object whose world matrix is `place`, a turn without scale."""
-    x = directions_to_place(place, turned(rotations, np.tile([1.0, 0, 0], (len(rotations), 1))))
-    z = directions_to_place(place, turned(rotations, np.tile([0, 0, 1.0], (len(rotations), 1))))
-    return quaternions_of(x, np.cross(z, x), z)

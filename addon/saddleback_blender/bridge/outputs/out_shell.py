@@ -16,7 +16,7 @@ from ...looks import NO_LOOK
 from ..inputs.mesh_in import level_place
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import replace_object, to_place
+from .out_collection import replace_object
 
 SHELL_ROLE = "shell"
 WALL_ATTRIBUTE = "saddleback_wall"  # how thick the solid is, in world units
@@ -36,7 +36,7 @@ def write_shell(
     shell, place = result.shell, level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Shell")
     mesh.vertices.add(len(shell.vertices))
-    compat.write_positions(mesh, to_place(place, shell.vertices).astype(np.float32))
+    compat.write_positions(mesh, shell.vertices.astype(np.float32))
     compat.write_corners(mesh, shell.triangles)
     mesh.update(calc_edges=True)
     compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)

@@ -10,8 +10,9 @@ from mathutils import Matrix
 from ... import compat, nodes
 from ...core.results import Indices, Reals, Sweep
 from ...core.settings import Voronoi2dSettings
+from ..inputs.mesh_in import level_place
 from .out_attributes import set_attribute
-from .out_collection import remove_output, replace_object, to_place
+from .out_collection import remove_output, replace_object
 
 CIRCLE_ROLE, BEACH_ROLE, GROWING_ROLE = "sweep circle", "beach curve", "growing edges"
 CIRCLE_CORNERS = 128
@@ -23,7 +24,8 @@ def write_sweep(
 ) -> bpy.types.Object:
     """Makes the source's sweep anew; returns the circle."""
     remove_sweep(source)
-    place = Matrix.Translation(sweep.center) @ Matrix(sweep.axes.tolist()).transposed().to_4x4()
+    own = Matrix.Translation(sweep.center) @ Matrix(sweep.axes.tolist()).transposed().to_4x4()
+    place = level_place(source) @ own
     circle = replace_object(context, source, CIRCLE_ROLE, _circle(), place)
     circle.hide_render = True
     _animate(circle, sweep, settings)
@@ -32,13 +34,13 @@ def write_sweep(
     half = 0.5 * sweep.last_radius / ring_count
     number = np.arange(ring_count * loop_count * size, dtype=np.int32).reshape(-1, size)
     around = np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2)
-    beach = _mesh("Saddleback Beach Curve", to_place(place, sweep.rings.reshape(-1, 3)), around)
+    beach = _mesh("Saddleback Beach Curve", sweep.seen_from_center(sweep.rings.reshape(-1, 3)), around)
     _show_between(beach, radii - half, radii + half)
     _write(
         context, source, BEACH_ROLE, beach, place, circle, 0.5 * settings.edge_radius, nodes.paths_material(),
         draws_circle=loop_count == 1,
     )  # fmt: skip
-    edges = _mesh("Saddleback Growing Edges", to_place(place, sweep.edge_vertices), sweep.edges)
+    edges = _mesh("Saddleback Growing Edges", sweep.seen_from_center(sweep.edge_vertices), sweep.edges)
     # As the beach curve is shown from half a step before its radius on, edges do not run ahead of it.
     _show_between(edges, sweep.edge_radius, np.full(len(sweep.edge_radius), NEVER))
     _write(context, source, GROWING_ROLE, edges, place, circle, settings.edge_radius, nodes.edges_material())

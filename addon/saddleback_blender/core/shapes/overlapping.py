@@ -19,7 +19,6 @@ from .. import native
 from ..results import Indices, Reals
 from ..solids.crossings import find_crossings
 from ..surfaces.quaternions import quaternions_of, turned
-from ..surfaces.seen_places import seen_from
 from .bent_copies import Bent, border, triangulated
 from .shape_templates import Parts, ShapeTemplate, Solid
 
@@ -80,10 +79,7 @@ def _closed(solid: Solid) -> Solid:
 
 @dataclass(frozen=True)
 class Order:
-    """What is drawn: shapes, one of them at each place of a field, and their solids, bent as closely as `fit` says.
-
-    They are kept in the frame `place` (4, 4).
-    """
+    """What is drawn: shapes, one of them at each place of a field, and their solids, bent as closely as `fit` says."""
 
     mesh: Any
     shapes: Sequence[Any]
@@ -91,7 +87,6 @@ class Order:
     placements: Any
     field: Any
     fit: float
-    place: Reals
     threads: int
 
     def map(self, factor: Reals, chosen: NDArray[np.int64], job: Any) -> Any:
@@ -152,7 +147,7 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> tuple[Reals,
     """
     factor = factor.copy()
     first, again = order.bend(mapped, job), []
-    points, triangles, owner = seen_from(order.place, first.vertices), first.triangles, first.triangle_copy
+    points, triangles, owner = first.vertices, first.triangles, first.triangle_copy
     middle = np.asarray(order.placements.center.positions(order.mesh))
     sizes = first.ends - first.begins
     off = first.vertices - np.repeat(middle, sizes, axis=0)
@@ -175,7 +170,7 @@ def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> tuple[Reals,
         again.append((bent, chosen))
         near = _near(middle, reach, chosen)[owner]
         around, fresh = triangles[near], bent.triangles + np.int32(len(points))
-        points = np.concatenate([points, seen_from(order.place, bent.vertices)])
+        points = np.concatenate([points, bent.vertices])
         whose = chosen.astype(np.int32)[bent.triangle_copy]
         found = _pairs(
             points, np.concatenate([around, fresh]), np.concatenate([owner[near], whose]),

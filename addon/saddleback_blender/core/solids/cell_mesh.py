@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from .. import native
 from ..progress import Progress
 from ..results import CellMesh
-from ..surfaces.seen_places import WORLD, seen_from
 from .boundary_distance import find_boundary
 from .cell_solid import Raised, raise_surface
 from .crossings import find_crossings, is_deep
@@ -237,11 +236,11 @@ def _is_crumb(positions: Floats, triangles: Ints, cells: Ints) -> NDArray[np.boo
     return crumb
 
 
-def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress, place: Floats = WORLD) -> CellMesh:
+def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> CellMesh:
     """Put an edge line where the plateau begins, and raise it as far as there is room.
 
     Each cell is an island of its own when there is a gap; without gap, inset and thickness vertices stay shared. With a
-    thickness but no inset the sides are upright walls. The cells are kept in the frame `place` (4, 4).
+    thickness but no inset the sides are upright walls.
     """
     fields, triangles, cells = pieces.fields, pieces.triangles, pieces.cells
     if shape.has_plateau and len(triangles):
@@ -263,7 +262,7 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress, place:
         height = _of_each(shape.height, triangles, cells, len(fields)) * height
         raised = raise_surface(fields[:, :6], triangles, height, shape.underside)
         owner = cells[raised.parent]
-        above, thinner, crossing = _with_room(raised, owner, progress, place)
+        above, thinner, crossing = _with_room(raised, owner, progress)
         feet = raised.base[raised.place]
         placed, triangles = drop_unused(np.column_stack([above, feet]), raised.triangles)
         vertices, feet = np.ascontiguousarray(placed[:, :3]), np.ascontiguousarray(placed[:, 3:])
@@ -273,7 +272,7 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress, place:
     return CellMesh(positions, positions, triangles, cells, vanished, none, none)
 
 
-def _with_room(raised: Raised, owner: Ints, progress: Progress, place: Floats) -> tuple[Floats, Ints, Ints]:
+def _with_room(raised: Raised, owner: Ints, progress: Progress) -> tuple[Floats, Ints, Ints]:
     """The vertices where there is room for them, and which of the triangles' cells (m,) are lower for want of it, and
     which still cross. Of what crosses by rounding alone nothing is told, though it is lowered, too.
     """
@@ -283,9 +282,8 @@ def _with_room(raised: Raised, owner: Ints, progress: Progress, place: Floats) -
 
     def find(vertices: Floats, triangles: Ints, among: Ints, job: object) -> Ints:
         nonlocal deep
-        seen = seen_from(place, vertices)
-        pairs = find_crossings(seen, triangles, among, job)
-        deep = pairs[is_deep(seen, triangles, pairs)]
+        pairs = find_crossings(vertices, triangles, among, job)
+        deep = pairs[is_deep(vertices, triangles, pairs)]
         has_no_room[beside(surface, np.unique(surface[deep]), solid.count)] = True
         return pairs
 

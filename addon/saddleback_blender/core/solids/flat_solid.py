@@ -12,12 +12,14 @@ from ..surfaces.plane_frame import PlaneFrame
 from .cell_mesh import CellShape
 
 
-def raised_cells(base: Any, plateau: Any | None, frame: PlaneFrame, shape: CellShape) -> CellPolygons:
+def raised_cells(
+    base: Any, plateau: Any | None, frame: PlaneFrame, shape: CellShape, count: int | None = None
+) -> CellPolygons:
     """Walls or rims from the cells' feet up to their tops, by two ClippedCells of the library.
 
     `base`: where cells begin, half the gap from their edges. `plateau`: where their tops begin, an inset farther in;
     None for upright walls. Loops must be outlines: no cell lies around a hole. A cell too narrow for a plateau ends in
-    a point, lower in proportion. Each loop is an island of its own.
+    a point, lower in proportion. Each loop is an island of its own. Of cells with rims the first `count` are made.
     """
     build = _Polygons(frame, shape)
     tops = _loops(plateau) if plateau is not None else {}
@@ -25,6 +27,8 @@ def raised_cells(base: Any, plateau: Any | None, frame: PlaneFrame, shape: CellS
         build.add_boxes(base.points, base.loop_offsets, base.loop_sites)
         return build.done()
     for site, loops in _loops(base).items():
+        if count is not None and site >= count:
+            continue
         for loop in loops:
             mine = tops.get(site, [])
             ring = None

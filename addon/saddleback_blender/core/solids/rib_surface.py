@@ -35,13 +35,19 @@ MOST_STEPS = 100_000
 POSITION, DISTANCE, DIRECTION = slice(0, 3), 3, slice(4, 7)
 
 
+UPRIGHT = (0.0, 0.0, 1.0)  # up, as an object sees it that is not turned
+
+
 @dataclass(frozen=True)
 class RibShape:
-    """How wide ribs are, up to which height above the lowest point all is solid, and how thick that is to be."""
+    """How wide ribs are, up to which height above the lowest point all is solid, how thick that is to be, and where up
+    is.
+    """
 
     width: float
     base: float = 0.0
     thickness: float = 0.0
+    up: tuple[float, float, float] = UPRIGHT
 
 
 @dataclass(frozen=True)
@@ -124,12 +130,13 @@ class _Ground:
     """What is solid from the lowest point up to the base's height: there distances are below half the width."""
 
     def __init__(self, vertices: Reals, shape: RibShape) -> None:
-        self._top, self._level = float(vertices[:, 2].min()) + shape.base, 0.5 * shape.width
+        self._up, self._level = np.array(shape.up), 0.5 * shape.width
+        self._top = float((vertices @ self._up).min()) + shape.base
         self._is_wanted = shape.base > 0.0
 
     def distance(self, places: Reals, distance: Reals) -> Reals:
         """The less (n,) of the distance (n,) to lines and that to the base, of places (n, 3)."""
-        return np.minimum(distance, self._level + places[:, 2] - self._top) if self._is_wanted else distance
+        return np.minimum(distance, self._level + places @ self._up - self._top) if self._is_wanted else distance
 
 
 def _too_long(fields: Reals, triangles: Indices, width: float) -> NDArray[np.bool_]:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ..errors import BadInputError
 from ..requests import Number, Points, Surface
 from ..results import Anchors, Indices, Reals
-from .seen_places import seen_from
 
 SAME_PLACE = 1e-5  # of the mesh's extent: vertices that are nearer to each other's mirror are partners
 ON_PLANE = 2e-5  # of the mesh's extent: points that are nearer to the plane are on it
@@ -46,22 +45,20 @@ def _meet(own: Reals, seen: Reals, found: Indices) -> None:
 
 @dataclass(frozen=True)
 class Mirror:
-    """The plane x = 0 of an object, and what lies to both sides of it."""
+    """The plane x = 0 of a surface, and what lies to both sides of it."""
 
     whole: Surface
     half: Surface  # where x is not below 0
     partner: Indices  # (V,) of the Blender mesh's vertices
-    frame: Reals  # (4, 4) into the world, of which x is mirrored; without scale
     reach: float  # how far from the plane points are on it
 
     @classmethod
-    def of(cls, whole: Surface, part: Surface, places: Reals, matrix: Reals, frame: Reals) -> Mirror:
+    def of(cls, whole: Surface, part: Surface, places: Reals, scale: Reals) -> Mirror:
         """Raises BadInputError where the mesh with vertices (V, 3) at `places`, in the object's space, has no mirror.
 
-        `part` of the whole is what patterns are to cover.
-        `matrix` and `frame` (4, 4) lead into the world: from the object's space, and from that without its scale.
+        `part` of the whole is what patterns are to cover; `scale` (3, 3) leads from the object's space to the surface.
         """
-        axes = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
+        axes = scale / np.linalg.norm(scale, axis=0)
         if max(abs(axes[:, 0] @ axes[:, 1]), abs(axes[:, 0] @ axes[:, 2])) > SKEW:
             raise BadInputError(
                 f"'{whole.name}' is sheared by its parent, so that it has no mirror; switch X Mirror off"
@@ -85,13 +82,12 @@ class Mirror:
         kept = np.flatnonzero((side >= -near).all(axis=1) & (side > near).any(axis=1)).astype(np.int32)
         if not len(kept):
             raise BadInputError(f"'{whole.name}' has no faces to cover where X is above 0; switch X Mirror off")
-        return cls(whole, _half(part, kept), partner, frame, ON_PLANE * whole.extent)
+        return cls(whole, _half(part, kept), partner, ON_PLANE * whole.extent)
 
     def plane_edges(self) -> Indices:
         """(n, 2) vertices of the Blender mesh: edges of the half at the plane."""
         half = self.half
-        local = self.seen(half.vertices)
-        on = np.abs(local[:, 0]) <= self.reach
+        on = np.abs(half.vertices[:, 0]) <= self.reach
         pairs = np.concatenate([half.triangles[:, (i, (i + 1) % 3)] for i in range(3)])
         pairs = pairs[on[pairs].all(axis=1)]
         edges: Indices = (pairs if half.used is None else half.used[pairs]).astype(np.int32)
@@ -101,36 +97,28 @@ class Mirror:
         """Those of an artist's points that are on the half, the plane included."""
         if points.ndim == 1:
             return points[self.half.compact(points.astype(np.int32)) >= 0]
-        return points[self.seen(points.astype(np.float64))[:, 0] >= -self.reach]
-
-    def seen(self, points: Reals) -> Reals:
-        """World places (n, 3) as seen from the frame."""
-        return seen_from(self.frame, points)
+        return points[points[:, 0] >= -self.reach]
 
     def both(self, points: Reals, is_on: NDArray[np.bool_] | None = None) -> tuple[Reals, Reals]:
-        """World places (n, 3), and those mirrored: alike to the bit as seen from the frame in single precision.
+        """Places (n, 3), and those mirrored: alike to the bit in single precision.
 
         Those that are on the plane, as `is_on` or their places say, are equal.
         """
         # Steps that are wide beside rounding, and that single precision has wherever the object is.
         step = 2.0 ** (np.ceil(np.log2(self.whole.extent)) - SINGLE_BITS)
-        seen = np.asarray(np.rint(self.seen(points) / step) * step)
+        seen = np.asarray(np.rint(points / step) * step)
         seen[np.abs(seen[:, 0]) <= self.reach if is_on is None else is_on, 0] = 0.0
-        return self._shown(seen), self._shown(seen * FLIP + 0.0)
+        return seen, seen * FLIP + 0.0
 
     def is_on(self, points: Reals) -> NDArray[np.bool_]:
-        """Tells which world places (n, 3) are on the plane."""
-        on: NDArray[np.bool_] = np.abs(self.seen(points)[:, 0]) <= self.reach
+        """Tells which places (n, 3) are on the plane."""
+        on: NDArray[np.bool_] = np.abs(points[:, 0]) <= self.reach
         return on
 
     def turned(self, directions: Reals) -> Reals:
-        """World directions (n, 3), mirrored."""
-        turned: Reals = ((directions @ self.frame[:3, :3]) * FLIP) @ self.frame[:3, :3].T
+        """Directions (n, 3), mirrored."""
+        turned: Reals = directions * FLIP
         return turned
-
-    def _shown(self, seen: Reals) -> Reals:
-        shown: Reals = seen @ self.frame[:3, :3].T + self.frame[:3, 3]
-        return shown
 
     def spread(self, values: NDArray[Number]) -> NDArray[Number]:
         """(V,) values that the half's vertices have -> those of both sides."""

@@ -33,6 +33,9 @@ class PlaneFrame:
         return points
 
 
+FLAT_FRAME = PlaneFrame(np.zeros(3), np.eye(3))  # whose plane is z = 0
+
+
 def is_flat(surface: Surface) -> bool:
     """Tells whether it lies in a plane."""
     try:

@@ -28,18 +28,33 @@ class Tile:
 
     def relaxed(self, places: Reals, iterations: int, threads: int, end: float, progress: Progress) -> Reals:
         """Even cells that go on from each side to the opposite one: (n, 2) places in the rectangle."""
-        local, begin = (places - self.corner) @ self.axes.T, progress.fraction
+        local, begin = self.seen(places), progress.fraction
         for number in range(iterations):
             with progress.stage(begin + (end - begin) * (number + 1) / iterations, "relaxing the sites") as job:
                 local = self._diagram(local, threads, job).centroids
-        moved: Reals = self.corner + self._diagram(local, threads, None).sites @ self.axes
-        return moved
+        return self.shown(self._diagram(local, threads, None).sites)
 
     def copies(self, places: Reals) -> Reals:
         """(9 n, 2): the sites, and those of the eight rectangles around."""
         shifts = np.array([(0, 0), *(shift for shift in product((-1, 0, 1), repeat=2) if shift != (0, 0))])
         found: Reals = (places + ((shifts * self.size) @ self.axes)[:, None]).reshape(-1, 2)
         return found
+
+    @property
+    def with_neighbors(self) -> Reals:
+        """(4, 2) corners of the rectangle with the eight around it."""
+        corners: Reals = self.corner + (np.array([(-1, -1), (2, -1), (2, 2), (-1, 2)]) * self.size) @ self.axes
+        return corners
+
+    def seen(self, places: Reals) -> Reals:
+        """Places (n, 2) by the rectangle's corner and sides."""
+        local: Reals = (places - self.corner) @ self.axes.T
+        return local
+
+    def shown(self, local: Reals) -> Reals:
+        """The other way."""
+        places: Reals = self.corner + local @ self.axes
+        return places
 
     def _diagram(self, local: Reals, threads: int, job: Any) -> Any:
         return native.load().periodic_voronoi_2d(local, [(0, 0), self.size], threads=threads, job=job)
