@@ -18,6 +18,7 @@ NAME = "saddleback_name"  # on outputs: the name that we gave it
 PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
 LOCAL = "saddleback_local"  # on outputs: the matrix that we gave it, as seen from the source
 MARKS = "saddleback_marks"  # on outputs: where some vertices of the source were then, in its own space
+OWN_MARKS = "saddleback_own_marks"  # on outputs: where some of their own points were then
 MATERIALS = "saddleback_materials"  # on outputs: the names of the materials that we gave it, one a line
 LAYER = "saddleback_layer"  # on outputs: the word of their layer; none on those of the first
 # On a source that overrides one of another file, where Blender keeps registered properties only.

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps what was made in its place where a source's transform is applied, or its origin set.
+"""Keeps what was made in its place where a transform is applied, the source's or its own, or an origin set.
 
-Blender leaves the children where they are; but what follows the surface is told by places in the source's space, which
-are others from then on, and would be transformed twice. It stays as it was made until it is made again.
+Blender leaves the children where they are; but what follows the surface is told by places in the source's space, and
+follows in its own, which are others from then on: it would be transformed twice. It stays as it was made until it is
+made again.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import jobs, rollback
-from ..bridge.outputs.out_collection import marks_of, outputs_of, was_applied
-from ..bridge.tokens import token_of
+from ..bridge.outputs.out_collection import marks_of, outputs_of, was_applied, was_applied_itself
+from ..bridge.tokens import OWN_MARKS, token_of
 from ..nodes import FOLLOW, modifier_of, remove_modifier
 
 _last: dict[str, bytes] = {}  # by the names of sources
@@ -25,26 +26,29 @@ def settle(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         return
     changed = [update.id.original for update in depsgraph.updates if update.is_updated_geometry]
     for item in changed:
-        if isinstance(item, bpy.types.Object) and item.type == "MESH" and token_of(item) and _is_new(item):
+        if not isinstance(item, bpy.types.Object) or item.type not in ("MESH", "CURVE"):
+            continue
+        if (token_of(item) or OWN_MARKS in item) and _is_new(item):
             _end_following(item)
 
 
-def _is_new(source: bpy.types.Object) -> bool:
-    """Tells whether a mesh is another than when it was asked last: not where modifiers alone move it in each frame."""
-    marks = marks_of(source).tobytes()
-    is_new = _last.get(source.name) != marks
-    _last[source.name] = marks
+def _is_new(item: bpy.types.Object) -> bool:
+    """Tells whether points are others than when it was asked last: not where modifiers alone move them."""
+    marks = marks_of(item).tobytes()
+    is_new = _last.get(item.name) != marks
+    _last[item.name] = marks
     return is_new
 
 
-def _end_following(source: bpy.types.Object) -> None:
-    for item in outputs_of(source):
+def _end_following(changed: bpy.types.Object) -> None:
+    of_source = [item for item in outputs_of(changed) if was_applied(item, changed)]
+    for item in [*of_source, *([changed] if was_applied_itself(changed) else [])]:
         modifier = modifier_of(item, FOLLOW)
-        if modifier is not None and was_applied(item, source):
+        if modifier is not None:
             remove_modifier(item, modifier)
             jobs.state.line = (
-                f"'{source.name}' has another transform or origin in its mesh: what was made of it stays where it is "
-                "and follows again once it is made again"
+                f"'{changed.name}' has another transform or origin in its {changed.type.lower()}: what was made stays "
+                "where it is and follows again once it is made again"
             )
 
 

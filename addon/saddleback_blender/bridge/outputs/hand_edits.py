@@ -14,7 +14,7 @@ import numpy as np
 
 from ... import compat, rollback
 from ...nodes import FOLLOW, modifier_of
-from ..tokens import LAYER, LOCAL, MARKS, MATERIALS, NAME, PLACE, ROLE, SOURCE
+from ..tokens import LAYER, LOCAL, MARKS, MATERIALS, NAME, OWN_MARKS, PLACE, ROLE, SOURCE
 
 CONTENT = "saddleback_content"  # on outputs: a hash of the data that we gave it
 COLOR_STEPS = 1023  # of color channels, which Blender's versions may tell with another last digit
@@ -66,7 +66,7 @@ def keep_object(item: bpy.types.Object) -> None:
 
 def make_ordinary(item: bpy.types.Object) -> None:
     """Takes off an output all that makes it one."""
-    keys = (ROLE, NAME, PLACE, LOCAL, MARKS, MATERIALS, CONTENT, SOURCE, LAYER)
+    keys = (ROLE, NAME, PLACE, LOCAL, MARKS, OWN_MARKS, MATERIALS, CONTENT, SOURCE, LAYER)
     rollback.remember_keys(item, *keys)
     for key in keys:
         if key in item:

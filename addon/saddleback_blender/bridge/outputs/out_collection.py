@@ -24,6 +24,7 @@ from ..tokens import (
     MARKS,
     MATERIALS,
     NAME,
+    OWN_MARKS,
     PLACE,
     ROLE,
     SOURCE,
@@ -89,7 +90,7 @@ def replace_object(
         given = _names(data)
     else:
         rollback.remember(item, "matrix_basis", "matrix_parent_inverse", "parent_type", "parent", "data")
-        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE, LOCAL, MARKS, CONTENT)
+        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE, LOCAL, MARKS, OWN_MARKS, CONTENT)
         keep_data(item)
         if CONTENT in item:
             del item[CONTENT]
@@ -110,7 +111,7 @@ def replace_object(
     item.matrix_parent_inverse = inverse @ place @ basis.inverted_safe() if is_sheared else inverse
     item[PLACE] = [value for row in (basis if is_sheared else place) for value in row]
     item[LOCAL] = [value for row in inverse @ place for value in row]
-    item[MARKS] = marks_of(source).ravel().tolist()
+    item[MARKS], item[OWN_MARKS] = (marks_of(one).ravel().tolist() for one in (source, item))
     item.matrix_basis = moved @ (basis if is_sheared else place)
     data.name = item.name
     return item
@@ -338,7 +339,7 @@ def _remove_data(data: bpy.types.ID) -> None:
 def _artists_move(item: bpy.types.Object, source: bpy.types.Object) -> Matrix:
     """Returns what the artist did to the place that we gave the object; exactly nothing where that is only rounding."""
     before = _noted(item, PLACE)
-    if before is None or was_applied(item, source):
+    if before is None or was_applied(item, source) or was_applied_itself(item):
         return Matrix.Identity(4)
     return Matrix.Identity(4) if _are_equal(item.matrix_basis, before) else item.matrix_basis @ before.inverted_safe()
 
@@ -357,10 +358,23 @@ def was_applied(item: bpy.types.Object, source: bpy.types.Object) -> bool:
     return bool(np.abs(expected - now).max() <= rounding < np.abs(expected - noted).max())
 
 
-def marks_of(source: bpy.types.Object) -> np.ndarray:
-    """(4, 3) where some of a mesh's vertices are, in its space; (0, 3) where it has none."""
-    vertices = source.data.vertices
-    some = [vertices[i * (len(vertices) - 1) // 3].co for i in range(4 if len(vertices) else 0)]
+def was_applied_itself(item: bpy.types.Object) -> bool:
+    """Tells whether an output's own transform was applied, or its origin set: its points have other places in its
+    space, and it has another place.
+    """
+    place, noted = _noted(item, PLACE), np.array(item.get(OWN_MARKS, ()), np.float64).reshape(-1, 3)
+    if place is None or not len(noted) or np.array_equal(marks_of(item), noted):
+        return False
+    return not _are_equal(item.matrix_basis, place)
+
+
+def marks_of(item: bpy.types.Object) -> np.ndarray:
+    """(4, 3) where some points of a mesh or a curve are, in its space; (0, 3) where it has none."""
+    if item.type == "CURVE":
+        points = [spline.points[0] for spline in item.data.splines if len(spline.points)]
+    else:
+        points = item.data.vertices
+    some = [points[i * (len(points) - 1) // 3].co[:3] for i in range(4 if len(points) else 0)]
     return np.array(some, np.float64).reshape(-1, 3)
 
 
