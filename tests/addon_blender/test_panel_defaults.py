@@ -197,6 +197,17 @@ def test_bare_cells_stand_a_hair_before_the_surface_and_a_script_s_lie_on_it():
     assert "Lift" not in find_output(item, "cells").modifiers
 
 
+@pytest.mark.parametrize("scale", [0.01, 1.0, 100.0])
+def test_the_copy_of_a_scaled_surface_is_lifted_by_a_hair_too(scale):
+    item = sphere(radius=1.0 / scale)
+    item.modifiers.new("Finer", "SUBSURF").levels = 1
+    item.scale = (scale, scale, scale)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.apply_look(look="BANDS")
+    rise = np.linalg.norm(shown(find_output(item, "surface")) - shown(item), axis=1)
+    np.testing.assert_allclose(rise, 5e-4 * max(item.dimensions), rtol=0.01)
+
+
 def test_the_source_can_be_hidden_and_still_be_worked_on():
     item = sphere()
     item.display_type = "WIRE"

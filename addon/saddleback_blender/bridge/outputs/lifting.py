@@ -19,7 +19,9 @@ def lift(source: bpy.types.Object, item: bpy.types.Object) -> None:
         return
     modifier = item.modifiers.new(LIFT, "DISPLACE")
     rollback.undo_with(partial(item.modifiers.remove, modifier))
-    modifier.mid_level, modifier.strength = 0.0, hair(source)
+    # Before Blender has evaluated it; the copy of the surface has the source's scale, and a hair is one of the world.
+    place = source.matrix_world @ item.matrix_parent_inverse @ item.matrix_basis
+    modifier.mid_level, modifier.strength = 0.0, hair(source) / abs(place.determinant()) ** (1.0 / 3.0)
 
 
 def lift_lying(source: bpy.types.Object, lies: dict[str, bool]) -> None:

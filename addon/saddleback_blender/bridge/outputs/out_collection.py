@@ -147,10 +147,7 @@ def _reachable(context: bpy.types.Context) -> list[bpy.types.Collection]:
 
 
 def hair(source: bpy.types.Object) -> float:
-    """A distance in the world that is enough for something to be seen before the source's surface.
-
-    In the space of outputs, too, whose scale is 1.
-    """
+    """A distance in the world that is enough for something to be seen before the source's surface."""
     return HAIR * float(max(source.dimensions))
 
 
