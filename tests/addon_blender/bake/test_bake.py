@@ -7,6 +7,7 @@ import tempfile
 import bpy
 import numpy as np
 import pytest
+from mathutils import Quaternion
 from scenes import add_object, fingerprint, grid_arrays, sphere
 
 from saddleback_blender.bridge.inputs.images_in import read_tiles
@@ -145,6 +146,21 @@ def test_directions_are_those_of_the_field():
         if expected is None:
             expected = np.array(item.matrix_world)[:3, :3] @ (0.6, 0.8, 0.0)
         assert np.allclose(found, expected, atol=1e-6)
+
+
+def test_places_in_cells_are_level_with_the_world():
+    """On a plate that stands upright, where its Y is the world's Z, and on one that is turned in its plane as well."""
+    item = plate()
+    maps = {"bake_cell": False, "bake_edge_distance": False, "bake_height": False, "bake_local_uv": True}
+    for angle in (0.0, 0.7):
+        item.rotation_mode = "QUATERNION"
+        item.rotation_quaternion = Quaternion((1, 0, 0), 0.5 * np.pi) @ Quaternion((0, 0, 1), angle)
+        bpy.ops.saddleback.tessellate(count=1, iterations=0, k=30)
+        bpy.ops.saddleback.bake(resolution=64, bits="32", **maps)
+        (local,) = (values for name, values in images().items() if "Place" in name or "Local" in name)
+        along_u, along_v = local[32, 40] - local[32, 24], local[40, 32] - local[24, 32]
+        for step, expected in ((along_u, (np.cos(angle), np.sin(angle))), (along_v, (-np.sin(angle), np.cos(angle)))):
+            np.testing.assert_allclose(step[:2] / np.linalg.norm(step[:2]), expected, atol=1e-4)
 
 
 def test_all_tiles_in_which_faces_lie_are_baked():
