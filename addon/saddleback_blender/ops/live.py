@@ -44,7 +44,7 @@ class Watched:
         self.name = source.name
         self.layer = source.saddleback.layer_word
         self.cells = FlowingCells()
-        self.seen: dict[str, str] = {}  # by kind of run: the content at rest of the request that was made last
+        self.seen: dict[str, str] = {}  # by kind of run: the content of the request that was made last
         self.inputs: set[tuple[str, str]] = set()  # data-blocks that are read
         self.is_changed = False
         self.is_accepted = False  # what was made belongs to what it is made from, whatever that is by now
