@@ -3,10 +3,12 @@
 
 import threading
 import time
+from functools import partial
 
 import bpy
 import numpy as np
 from hands import FRAME, wait_until
+from mathutils import Vector
 from scenes import add_object, fingerprint
 
 from tests import synthetic_cells
@@ -43,7 +45,7 @@ def _count_draw(_panel, context):
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
     made = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, dressed, layered)
-    made = (*made, followed)
+    made = (*made, followed, applied)
     plays = (*made, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
@@ -199,6 +201,47 @@ def undone(screen):
     screen.press("Z", ctrl=True, shift=True)
     yield 6 * FRAME
     return {"undo": after_undo, "redo": [outputs(), CELL in ball().data.attributes]}
+
+
+def applied(screen):
+    """Scale is applied, the edges are made again, and that is undone: nothing jumps, nor after the Redo of Apply."""
+
+    def middle():
+        item = bpy.data.objects["Moved Edges"]
+        mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+        return list(sum((item.matrix_world @ v.co for v in mesh.vertices), Vector()) / len(mesh.vertices))
+
+    with screen.override():
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, location=(5.0, 3.0, 1.0), rotation=(1.0, 0.5, 0.0))
+        bpy.context.active_object.name = "Moved"
+        bpy.context.active_object.scale = (1.0, 2.0, 1.0)
+        bpy.context.view_layer.update()
+        bpy.ops.saddleback.tessellate("EXEC_DEFAULT", True, count=40)
+    yield 2 * FRAME
+    found = [middle()]
+
+    def call(operator, *arguments, **settings):
+        with screen.override():
+            bpy.context.view_layer.objects.active = bpy.data.objects["Moved"]
+            operator(*arguments, **settings)
+
+    steps = (
+        partial(call, bpy.ops.object.transform_apply, "EXEC_DEFAULT", True),
+        partial(call, bpy.ops.saddleback.tessellate, "EXEC_DEFAULT", True, count=40, seed=2),
+        partial(call, bpy.ops.ed.undo),
+        partial(call, bpy.ops.ed.undo),
+        partial(call, bpy.ops.ed.redo),
+    )
+    for step in steps:
+        step()
+        yield 2 * FRAME
+        found.append(middle())
+    call(bpy.ops.ed.undo)
+    with screen.override():
+        bpy.data.batch_remove([item for item in bpy.data.objects if item.name.startswith("Moved")])
+        bpy.context.view_layer.objects.active = ball()
+    yield 2 * FRAME
+    return found
 
 
 def repaired(screen):

@@ -52,6 +52,11 @@ def test_one_undo_takes_everything_back_and_redo_brings_it_again(report):
     assert result["redo"] == [["Ball Edges"], True]
 
 
+def test_nothing_jumps_where_a_transform_is_applied_and_steps_are_undone(report):
+    for middle in seen(report, "applied"):
+        assert middle == pytest.approx([5.0, 3.0, 1.0], abs=0.1)
+
+
 def test_a_faulty_mesh_is_repaired_by_one_click(report):
     assert "'Faulty'" in seen(report, "repaired")["line"]
 

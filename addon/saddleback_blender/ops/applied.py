@@ -25,11 +25,20 @@ def settle(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if depsgraph.mode == "RENDER" or rollback.is_writing():
         return
     changed = [update.id.original for update in depsgraph.updates if update.is_updated_geometry]
-    for item in changed:
-        if not isinstance(item, bpy.types.Object) or item.type not in ("MESH", "CURVE"):
-            continue
+    # Chosen first: a node group among them is gone once the last modifier with it is.
+    for item in [item for item in changed if isinstance(item, bpy.types.Object) and item.type in ("MESH", "CURVE")]:
         if (token_of(item) or OWN_MARKS in item) and _is_new(item):
-            _end_following(item)
+            for output in [*outputs_of(item), item]:
+                _leave(output, item)
+
+
+@persistent  # type: ignore[untyped-decorator]
+def settle_again(*_given: object) -> None:
+    """Does so after Undo and Redo: a step holds what was before following ended, and updates need not name it."""
+    _last.clear()
+    for item in bpy.data.objects:
+        if OWN_MARKS in item and item.parent is not None and item.parent.type == "MESH":
+            _leave(item, item.parent)
 
 
 def _is_new(item: bpy.types.Object) -> bool:
@@ -40,24 +49,27 @@ def _is_new(item: bpy.types.Object) -> bool:
     return is_new
 
 
-def _end_following(changed: bpy.types.Object) -> None:
-    of_source = [item for item in outputs_of(changed) if was_applied(item, changed)]
-    for item in [*of_source, *([changed] if was_applied_itself(changed) else [])]:
-        modifier = modifier_of(item, FOLLOW)
-        if modifier is not None:
-            remove_modifier(item, modifier)
-            jobs.state.line = (
-                f"'{changed.name}' has another transform or origin in its {changed.type.lower()}: what was made stays "
-                "where it is and follows again once it is made again"
-            )
+def _leave(item: bpy.types.Object, changed: bpy.types.Object) -> None:
+    """Ends the following of an output where its transform was applied, or its source's; one of both is `changed`."""
+    modifier = modifier_of(item, FOLLOW)
+    if modifier is not None and (was_applied_itself(item) or (item != changed and was_applied(item, changed))):
+        remove_modifier(item, modifier)
+        jobs.state.line = (
+            f"'{changed.name}' has another transform or origin in its {changed.type.lower()}: what was made stays "
+            "where it is and follows again once it is made again"
+        )
 
 
 def register() -> None:
     """Makes everything of this module known to Blender."""
     bpy.app.handlers.depsgraph_update_post.append(settle)
+    for handlers in (bpy.app.handlers.undo_post, bpy.app.handlers.redo_post):
+        handlers.append(settle_again)
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
+    for handlers in (bpy.app.handlers.redo_post, bpy.app.handlers.undo_post):
+        handlers.remove(settle_again)
     bpy.app.handlers.depsgraph_update_post.remove(settle)
     _last.clear()
