@@ -233,14 +233,18 @@ DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions&
   std::vector<double> turned_angles = angles, turned_turns = turns;
   std::vector<bool> fixed(mesh.face_count(), false);
   if (!strokes.empty() || !wanted.empty()) {
-    const FaceSprings<double> springs = turning_springs(mesh, symmetry, angles, strokes);
+    FaceSprings<double> springs = turning_springs(mesh, symmetry, angles, strokes);
     stage.check();
     std::vector<double> turned;
-    if (!strokes.empty())
+    if (options.directions) {
+      turned = turns_towards(mesh, connection, symmetry, angles, wanted, springs, k_power_accuracy, stage);
+      // Strokes chose among equal angles without the directions; theirs are now those next to what both ask for.
+      for (Index f = 0; f < mesh.face_count(); ++f)
+        springs.target[f] = turned[f] + std::remainder(springs.target[f] - turned[f], k_turn / symmetry);
+    } else if (!strokes.empty()) {
       turned = relax_angles(mesh, connection, springs, shift, k_stroke_accuracy,
                             stage.part(0.6, wanted.empty() ? 0.95 : 0.75));
-    if (options.directions)
-      turned = turns_towards(mesh, connection, symmetry, angles, wanted, springs, k_power_accuracy, stage);
+    }
     if (!wanted.empty()) turned = turn_onto(wanted, springs, std::move(turned), stage.part(0.75, 0.95));
     for (Index f = 0; f < mesh.face_count(); ++f) {
       turned_angles[f] += turned[f];

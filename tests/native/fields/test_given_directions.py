@@ -216,3 +216,20 @@ def test_given_turns_around_handles_are_met(around_tube: int, symmetry: int) -> 
     assert off(editor.field({}), wanted.angles).max() < 1e-9
     np.testing.assert_array_equal(editor.field({}, directions=directions).angles, found.angles)
     np.testing.assert_array_equal(editor.field({}).angles, wanted.angles)
+
+
+@pytest.mark.parametrize("symmetry", SYMMETRIES)
+@pytest.mark.parametrize("is_hard", [True, False], ids=["hard", "soft"])
+def test_strokes_and_directions_that_agree_do_not_part(is_hard: bool, symmetry: int) -> None:
+    """Of equal angles strokes took others than directions did: the field turned around between them."""
+    mesh = sb.Mesh(*SURFACES["torus"])
+    one, other = 1000, 4000
+    singularities = {one: 1 / symmetry, other: -1 / symmetry}
+    lines = [sb.trace(mesh, vertex, heading, 0.8).surface for vertex, heading in ((50, 0.4), (2500, 2.0), (5200, 4.5))]
+    strokes = [sb.Stroke(sb.SurfaceCurve(mesh, line), is_hard) for line in lines]
+    wanted = sb.direction_field(mesh, symmetry, singularities, strokes)
+    some = np.where(chosen(mesh, 0.1, True, 3)[:, None], wanted.vectors, 0)
+    found = sb.direction_field(mesh, symmetry, singularities, strokes, directions=some)
+    assert found.singularities == singularities
+    assert off(found, wanted.angles).mean() < 1
+    assert (found.turns**2).sum() < 1.1 * (wanted.turns**2).sum()
