@@ -26,20 +26,28 @@ SCALE_ROUNDING = 5e-7  # of the largest number of a transform, what Blender's si
 
 
 @contextmanager
-def mesh_of(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> Iterator[bpy.types.Mesh]:
-    """The object's mesh, or with `use_modifiers` its evaluated one, to be read only inside the `with`."""
+def mesh_of(
+    context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool, has_layers: bool = True
+) -> Iterator[bpy.types.Mesh]:
+    """The object's mesh, or with `use_modifiers` its evaluated one, to be read only inside the `with`.
+
+    Without `has_layers` it has the shape for sure, and of vertex groups, UV maps and colors what is drawn: Blender
+    evaluates all modifiers once more for the others.
+    """
     if not use_modifiers:
         yield source.data
         return
-    with modified(context, source) as (_, mesh):
+    with modified(context, source, has_layers) as (_, mesh):
         yield mesh
 
 
 @contextmanager
-def modified(context: bpy.types.Context, item: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
+def modified(
+    context: bpy.types.Context, item: bpy.types.Object, has_layers: bool = True
+) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
     """The object and its mesh as evaluated, whether or not the view layer shows it; to be read inside the `with`."""
     with evaluated(context, [item]) as (shown,):
-        mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=context.evaluated_depsgraph_get())
+        mesh = shown.to_mesh(preserve_all_data_layers=has_layers, depsgraph=context.evaluated_depsgraph_get())
         try:
             yield shown, mesh
         finally:

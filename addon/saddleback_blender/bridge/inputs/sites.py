@@ -116,7 +116,7 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
         raise BadInputError(f"'{source.name}' cannot take its sites from itself; choose another object, or Selected")
     if other.type != "MESH":
         raise BadInputError(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
-    with modified(context, other) as (shown, mesh):
+    with modified(context, other, has_layers=False) as (shown, mesh):
         points = seen_by(source, to_world(shown, compat.read_positions(mesh)))
     if not len(points):
         raise BadInputError(

@@ -116,7 +116,7 @@ class Follower:
     @cached_property
     def _normals(self) -> Reals:
         """(V, 3) of the vertices of the mesh that was read, in the object's space."""
-        with mesh_of(self._context, self._source, self._use_modifiers) as mesh:
+        with mesh_of(self._context, self._source, self._use_modifiers, has_layers=False) as mesh:
             return read_vertex_normals(mesh)
 
     def notes(self) -> list[str]:

@@ -93,14 +93,14 @@ def check_attribute_names(
 
 def has_own_faces(context: bpy.types.Context, source: bpy.types.Object) -> bool:
     """Tells whether the object's faces are those of its own mesh after its modifiers, too, wherever they have moved."""
-    with mesh_of(context, source, True) as mesh:
+    with mesh_of(context, source, True, has_layers=False) as mesh:
         return _equal_faces(mesh, source.data)
 
 
 def _same_shape(
     context: bpy.types.Context, source: bpy.types.Object, other: bpy.types.Object, use_modifiers: bool
 ) -> bool:
-    with mesh_of(context, source, use_modifiers) as mesh:
+    with mesh_of(context, source, use_modifiers, has_layers=False) as mesh:
         return _equal_faces(mesh, other.data) and np.array_equal(
             compat.read_positions(mesh), compat.read_positions(other.data)
         )

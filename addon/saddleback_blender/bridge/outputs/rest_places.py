@@ -45,7 +45,7 @@ def read_rest(context: bpy.types.Context, source: bpy.types.Object, use_modifier
     own = compat.read_positions(source.data)
     if not any(modifier.show_viewport for modifier in source.modifiers):
         return Rest(own.astype(np.float64), BY_PLACE)
-    with mesh_of(context, source, True) as mesh:
+    with mesh_of(context, source, True, has_layers=False) as mesh:
         now = _rest_of(mesh)
         if now is None:
             return Rest(None, NOT_AT_ALL)
