@@ -1,8 +1,10 @@
 // Method: the distance from a triangle's points to another triangle is a convex function, greatest at a corner; so the
 // farthest corner from any one face of the other mesh bounds the whole triangle. So does the distance of its farthest
 // corner and the way from there: by Jung's theorem some corner of a triangle is no farther from any of its points than
-// its longest side over the root of three. Triangles whose bound exceeds what was
-// found by more than the tolerance are divided into four, all of one size before those of the next.
+// its longest side over the root of three. Where the meshes are nearly the same, but their edges cross, no face is as
+// near as that to all of a triangle: there the triangle is cut by the planes that halve the angles between faces of the
+// other mesh, so that each piece has its face, and what bounds the pieces bounds the triangle. Triangles whose bound
+// exceeds what was found by more than the tolerance are divided into four, all of one size before those of the next.
 
 #include "saddleback/mesh/hausdorff_distance.h"
 
@@ -10,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/project.h"
@@ -32,6 +36,24 @@ struct Patch {
   std::array<Probe, 3> corner;
   double most = 0;  ///< no point of it is farther
 };
+
+using Polygon = std::vector<Vec3>;
+
+/// Cuts off what lies beyond a plane from a convex polygon, and returns it.
+Polygon cut_off(Polygon& corners, const Vec3& in_plane, const Vec3& normal) {
+  Polygon kept, beyond;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    const double at_a = normal.dot(a - in_plane), at_b = normal.dot(b - in_plane);
+    (at_a > 0 ? beyond : kept).push_back(a);
+    if ((at_a > 0) == (at_b > 0)) continue;
+    const Vec3 crossing = a + (at_a / (at_a - at_b)) * (b - a);
+    kept.push_back(crossing);
+    beyond.push_back(crossing);
+  }
+  corners = std::move(kept);
+  return beyond;
+}
 
 double diagonal(const Mesh& a, const Mesh& b) {
   Vec3 low = a.position(0), high = low;
@@ -82,27 +104,63 @@ class Search {
     }
     patch.most = farthest + k_jung * longest;
     if (patch.most <= known_) return;
+    const std::array<Vec3, 3> places{patch.corner[0].place, patch.corner[1].place, patch.corner[2].place};
     for (const Probe& corner : patch.corner) {
       double by_way = 0;
       for (const Probe& other : patch.corner)
         by_way = std::max(by_way, corner.distance + (other.place - corner.place).norm());
-      patch.most = std::min({patch.most, most_from(corner.nearest, patch), by_way});
+      patch.most = std::min({patch.most, most_from(corner.nearest, places), by_way});
     }
   }
 
-  /// The distance from one face of the other mesh beyond which no point of the patch is.
-  double most_from(Index face, const Patch& patch) const {
+  /// The distance from one face of the other mesh beyond which no point between some corners is.
+  double most_from(Index face, std::span<const Vec3> corners) const {
     double most = 0;
-    for (const Probe& corner : patch.corner)
-      most = std::max(most, (position(to_, nearest_on_face(to_, face, corner.place)) - corner.place).norm());
+    for (const Vec3& corner : corners)
+      most = std::max(most, (position(to_, nearest_on_face(to_, face, corner)) - corner).norm());
     return most;
   }
 
-  /// Tells whether the face that is nearest to the middle settles a patch: so it is where the meshes are the same,
-  /// though at its corners other faces are as near.
-  bool is_settled_by_middle(const Patch& patch) const {
+  /// The normal of the plane that halves the angle between a face of the other mesh and the one across an edge, away
+  /// from the former. Of any length.
+  Vec3 towards_next(Index halfedge) const {
+    const Index twin = to_.twin(halfedge);
+    const Vec3 edge = to_.position(to_.to(halfedge)) - to_.position(to_.from(halfedge));
+    const auto normal = [&](Index h, const Vec3& along) {
+      return along.cross(to_.position(to_.apex(h)) - to_.position(to_.from(h))).normalized();
+    };
+    return edge.cross(normal(halfedge, edge) + normal(twin, -edge));
+  }
+
+  /// Tells whether faces of the other mesh settle a patch, each the piece of it that is nearer to that face than to the
+  /// next ones: so it is where the meshes are nearly the same. Begins with one face and goes on across its edges.
+  bool is_settled(const Patch& patch, Index face) const {
+    constexpr int k_most_pieces = 64;  // some times as many as faces meet at a vertex
+    struct Piece {
+      Polygon corners;
+      Index face, from;  ///< the half-edge of the face through which it was come to
+    };
+    std::vector<Piece> pieces{{{patch.corner[0].place, patch.corner[1].place, patch.corner[2].place}, face, k_none}};
+    for (int looks = 0; !pieces.empty(); ++looks) {
+      Piece piece = std::move(pieces.back());
+      pieces.pop_back();
+      if (most_from(piece.face, piece.corners) <= known_) continue;
+      if (looks >= k_most_pieces) return false;
+      for (Index h = 3 * piece.face; h < 3 * piece.face + 3; ++h) {
+        const Index twin = to_.twin(h);
+        if (twin == k_none || h == piece.from) continue;
+        Polygon beyond = cut_off(piece.corners, to_.position(to_.from(h)), towards_next(h));
+        if (!beyond.empty()) pieces.push_back({std::move(beyond), Mesh::face_of(twin), twin});
+      }
+      if (most_from(piece.face, piece.corners) > known_) return false;
+    }
+    return true;
+  }
+
+  /// Tells whether nothing in a patch is farther than what is known, by the faces about the one nearest to its middle.
+  bool is_settled(const Patch& patch) const {
     const Vec3 middle = (patch.corner[0].place + patch.corner[1].place + patch.corner[2].place) / 3;
-    return most_from(probe(middle, patch.corner[0].nearest).nearest, patch) <= known_;
+    return is_settled(patch, probe(middle, patch.corner[0].nearest).nearest);
   }
 
   std::vector<Patch> faces(const JobStage& stage) const {
@@ -136,7 +194,7 @@ class Search {
     parallel_for(count, threads_, 64, [&](Index i, int) {
       stage.check();
       const Patch& patch = patches[i];
-      if (is_settled_by_middle(patch)) return;  // none of its quarters is farther than 0
+      if (is_settled(patch)) return;  // none of its quarters is farther than 0
       std::array<Vec3, 3> middle;
       std::array<Probe, 3> at_middle;
       for (int side = 0; side < 3; ++side) {

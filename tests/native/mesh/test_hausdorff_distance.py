@@ -75,6 +75,46 @@ def test_where_surfaces_are_the_same_one_look_is_enough() -> None:
     assert min(seconds(1e-7) for _ in range(3)) < 4 * min(seconds(1e-2) for _ in range(3))  # 13 times before
 
 
+def turned(vertices: np.ndarray, angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(vertices @ [[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+def nearly_the_same() -> list[tuple[str, float, sb.Mesh, sb.Mesh]]:
+    torus, noise = meshes.torus(48, 20), 1e-5 * np.random.default_rng(3).normal(size=(960, 3))
+    return [
+        ("flat", 1e-4, sb.Mesh(*meshes.grid(14, 14)), sb.Mesh(*meshes.grid(19, 11))),
+        ("turned", 1e-5, sb.Mesh(*torus), sb.Mesh(turned(torus[0], 1e-3), torus[1])),
+        ("moved", 1e-5, sb.Mesh(*torus), sb.Mesh(torus[0] + noise, torus[1])),
+        ("finer", 1e-5, sb.Mesh(*meshes.cylinder(12, 9, 1, 2)), sb.Mesh(*meshes.cylinder(24, 17, 1, 2))),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance", "a", "b"), nearly_the_same(), ids=lambda value: value if type(value) is str else ""
+)
+def test_where_surfaces_are_nearly_the_same_few_looks_are_enough(
+    name: str, tolerance: float, a: sb.Mesh, b: sb.Mesh
+) -> None:
+    """However their faces lie on each other, and without loss: by samples of both, the middles of edges among them."""
+
+    def seconds(wanted: float) -> float:
+        start = process_time()
+        sb.hausdorff_distance(a, b, wanted, threads=1)
+        return process_time() - start
+
+    found = sb.hausdorff_distance(a, b, tolerance)
+    slack = tolerance * np.linalg.norm(np.ptp(a.vertices, axis=0))
+    for of, other, most in ((a, b, found.from_first), (b, a, found.from_second)):
+        places = [of.vertices, of.vertices[of.edges].mean(axis=1), sb.sample(of, 20000, seed=1).positions(of)]
+        on_other = other.vertices[other.edges].reshape(-1, 3)
+        places.append(sb.project(of, on_other).positions(of))
+        all_places = np.concatenate(places)
+        sampled = np.linalg.norm(sb.project(other, all_places).positions(other) - all_places, axis=1).max()
+        assert sampled <= most + 1.01 * slack
+    assert min(seconds(tolerance) for _ in range(3)) < 10 * min(seconds(1e-1) for _ in range(3)) + 0.01
+
+
 def test_threads_change_nothing() -> None:
     a, b = sb.Mesh(*meshes.icosphere(3)), sb.Mesh(*meshes.icosphere(1))
     one, many = (sb.hausdorff_distance(a, b, threads=n) for n in (1, 8))
