@@ -200,8 +200,10 @@ py::object find_cells(const py::object& graph, const py::object& sites, bool exa
   GeodesicVoronoi cells = run_on(device, !exact && is_search_worth_a_device(g), [&](const std::vector<int>& devices) {
     if (!devices.empty() && exact) throw InputError("exact: runs on the processor only; wanted device='cpu'");
     options.cuda_device = first_device(devices);
-    return without_gil(
-        [&] { return exact ? exact_voronoi(g.mesh(), points, token) : geodesic_voronoi(g, points, options, token); });
+    return without_gil([&] {
+      return exact ? exact_voronoi(g.mesh(), points, token, options.threads)
+                   : geodesic_voronoi(g, points, options, token);
+    });
   });
   return make_cells(std::move(cells), graph, options.cuda_device >= 0);
 }
@@ -347,7 +349,7 @@ exact : bool
     point lies in a cell whose site is farther than another by more than 1e-5 of a cell's size (the root of its area).
     Sites within 1e-10 of the extent of their part of the mesh of each other are one: the first of them has the cell.
     Where lengths were given, the extent is the root of its area, or its longest edge.
-    Many times slower, and on one core.
+    Many times slower.
 threads : int
     0: all cores. The result does not depend on it.
 device : str

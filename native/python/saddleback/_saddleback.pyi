@@ -2581,7 +2581,7 @@ def geodesic_voronoi(
         point lies in a cell whose site is farther than another by more than 1e-5 of a cell's size (the root of its area).
         Sites within 1e-10 of the extent of their part of the mesh of each other are one: the first of them has the cell.
         Where lengths were given, the extent is the root of its area, or its longest edge.
-        Many times slower, and on one core.
+        Many times slower.
     threads : int
         0: all cores. The result does not depend on it.
     device : str

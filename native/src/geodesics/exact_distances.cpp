@@ -9,6 +9,7 @@
 #include "geodesics/exact/exact_path.h"
 #include "geodesics/exact/exact_propagation.h"
 #include "geodesics/exact/exact_windows.h"
+#include "geodesics/exact/ways_to_face.h"
 
 namespace saddleback {
 namespace {
@@ -131,19 +132,8 @@ ExactField::Sight ExactField::nearest_at(const SurfacePoint& point) const {
   return {parts_->propagation.owner(approach.root), approach.distance};
 }
 
-void ExactField::ways_at(const SurfacePoint& point, std::vector<Way>& ways) const {
-  ways.clear();
-  parts_->tracer.visit_ways(point, [&](double distance, Index root, const Vec2& image) {
-    if (!std::isfinite(distance)) return;
-    const Index source = parts_->propagation.owner(root);
-    const double before = root < parts_->surface.vertex_count() ? parts_->propagation.distance(root) : 0;
-    const auto known = std::ranges::find(ways, source, &Way::source);
-    if (known == ways.end())
-      ways.push_back({source, distance, before, image});
-    else if (distance < known->distance)
-      *known = {source, distance, before, image};
-  });
-  std::ranges::sort(ways, {}, &Way::source);
+WaysToFace ExactField::ways_to(Index face) const {
+  return {parts_->surface, parts_->propagation, parts_->windows, parts_->nearest, face};
 }
 
 Vec2 ExactField::place_of(const SurfacePoint& point) const { return parts_->tracer.place_of(point); }

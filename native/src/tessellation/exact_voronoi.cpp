@@ -7,6 +7,7 @@
 
 #include "saddleback/mesh/surface_curve.h"
 
+#include "support/threads/parallel.h"
 #include "tessellation/cells/exact_candidates.h"
 #include "tessellation/relaxation/diagram.h"
 
@@ -181,19 +182,22 @@ class InFaces {
 
 }  // namespace
 
-GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job) {
+GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job, int threads) {
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells by exact distances");
   std::vector<Index> kept = sites_of_places(mesh, sites);
   SurfacePoints sources;
   for (const Index site : kept) sources.push_back(sites[site]);
   auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
-  const ExactParts parts(*field, kept, tolerances(mesh, sites), stage.part(0.3, 0.8));
+  const ExactParts parts(*field, kept, tolerances(mesh, sites), threads, stage.part(0.3, 0.8));
   const FacesOfParts faces(parts);
   const ExactCandidates candidates(parts, faces.table(), static_cast<Index>(sites.size()));
-  GeodesicVoronoi diagram = subdivision(candidates, sites, 1, stage.part(0.85, 0.95));
+  GeodesicVoronoi diagram = subdivision(candidates, sites, threads, stage.part(0.85, 0.95));
   InFaces(parts, diagram).tell();
-  for (const SurfacePoint& point : diagram.points) diagram.point_distance.push_back(field->nearest_at(point).distance);
+  diagram.point_distance.resize(diagram.points.size());
+  parallel_for(static_cast<Index>(diagram.points.size()), threads, 256, [&](Index point, int) {
+    diagram.point_distance[point] = field->nearest_at(diagram.points[point]).distance;
+  });
   diagram.exact_field = std::move(field);
   diagram.exact_sites = std::move(kept);
   stage.update(1);

@@ -27,6 +27,8 @@ std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sourc
 NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources,
                            double limit = std::numeric_limits<double>::infinity(), Job* job = nullptr);
 
+class WaysToFace;
+
 /// The exact distance of every point of the surface, not of the vertices alone, and the shortest paths. Keeps the
 /// windows, some 40 bytes each and 20 to 150 of them a vertex. Immutable: any number of threads may ask it.
 class ExactField {
@@ -61,9 +63,8 @@ class ExactField {
     Vec2 image;     ///< of the root
     double straight_to(const Vec2& place) const { return before + (place - image).norm(); }
   };
-  /// The sources that reach a point's face, by number, each with the shortest way that is known there: of the nearest
-  /// source its distance, of others no less than that. O(windows about its face).
-  void ways_at(const SurfacePoint& point, std::vector<Way>& ways) const;
+  /// The ways to the points of a face; the field must outlive them. O(windows about it).
+  WaysToFace ways_to(Index face) const;
   /// Returns the place of a point in the plane of its face, which some source must reach.
   Vec2 place_of(const SurfacePoint& point) const;
 

@@ -98,7 +98,7 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
 /// but for rounding. `vertex_cell` and `locate` are exact up to rounding. Two ways to a site that are equally long may
 /// be told apart by rounding. Sites within 1e-10 of the extent of their part of the mesh of each other are one: the
 /// first has the cell. Where lengths were given, the extent is the root of its area, or its longest edge. \throw as
-/// geodesic_voronoi. About O(V^1.5 + points) time.
-GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job = nullptr);
+/// geodesic_voronoi. About O(V^1.5 + points) time. `threads`: 0: all cores; the result does not depend on them.
+GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job = nullptr, int threads = 0);
 
 }  // namespace saddleback

@@ -23,11 +23,6 @@ class ExactTracer {
 
   /// O(windows on the face's edges).
   Approach approach(const SurfacePoint& point) const;
-  /// Visits (distance, root, image) of every way to a point of a face: from sources in it, from its corners, through
-  /// its edges. `image` is that of the root, in the plane of `place_of`; a way that bends at the end of what is seen
-  /// through an edge is longer than the line from there. A corner is taken as a point of the face like any other.
-  template <class Visit>
-  void visit_ways(const SurfacePoint& point, Visit&& visit) const;
   /// Returns the place of a point in the plane of its face, which some source must reach.
   Vec2 place_of(const SurfacePoint& point) const {
     return surface_.in_frame(3 * surface_.face_of(point.face), point.barycentric);
@@ -46,26 +41,5 @@ class ExactTracer {
   const ExactPropagation& propagation_;
   const KeptWindows& windows_;
 };
-
-template <class Visit>
-void ExactTracer::visit_ways(const SurfacePoint& point, Visit&& visit) const {
-  if (!surface_.holds(point.face)) return;
-  const Index first = 3 * surface_.face_of(point.face);
-  const Vec2 at = surface_.in_frame(first, point.barycentric);
-  for (const SourceInFace& source : surface_.sources_in(first / 3)) {
-    const Vec2 image = surface_.in_frame(first, source.barycentric);
-    visit((at - image).norm(), surface_.vertex_count() + source.source, image);
-  }
-  for (Index i = 0; i < 3; ++i) {
-    const Index h = first + i, corner = surface_.frame(h).from;
-    const Vec2 start = surface_.in_frame(first, Vec3::Unit(i)), end = surface_.in_frame(first, Vec3::Unit((i + 1) % 3)),
-               along = (end - start).normalized(), up(-along.y(), along.x());
-    const Vec2 place = surface_.in_frame(h, point.barycentric);
-    visit(propagation_.distance(corner) + place.norm(), corner, start);
-    windows_.visit(h, place, [&](const SightLine& way) {
-      visit(way.distance, way.root, Vec2(start + way.image.x() * along + way.image.y() * up));
-    });
-  }
-}
 
 }  // namespace saddleback

@@ -169,10 +169,4 @@ std::span<const SourceInFace> ExactSurface::sources_in(Index face) const {
   return {begin, end};
 }
 
-Vec2 ExactSurface::in_frame(Index h, const Vec3& barycentric) const {
-  const EdgeFrame& frame = frames_[h];
-  const double at_to = barycentric[Mesh::next(h) % 3], at_apex = barycentric[Mesh::prev(h) % 3];
-  return {at_to * frame.length + at_apex * frame.apex_x, at_apex * frame.apex_y};
-}
-
 }  // namespace saddleback

@@ -63,7 +63,11 @@ class ExactSurface {
     for (Index i = first_beside_[h]; i != k_none; i = beside_[i].next) visit(beside_[i]);
   }
   /// Returns where the point of the half-edge's face is, in the frame of the half-edge.
-  Vec2 in_frame(Index h, const Vec3& barycentric) const;
+  Vec2 in_frame(Index h, const Vec3& barycentric) const {
+    const EdgeFrame& frame = frames_[h];
+    const double at_to = barycentric[Mesh::next(h) % 3], at_apex = barycentric[Mesh::prev(h) % 3];
+    return {at_to * frame.length + at_apex * frame.apex_x, at_apex * frame.apex_y};
+  }
   /// Returns where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
   bool may_bend(Index vertex) const { return bends_[vertex] != Bends::never; }
   /// Tells whether it is so near to a source that rounding leaves gaps between rays on their way round it: it emits

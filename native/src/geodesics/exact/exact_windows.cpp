@@ -64,23 +64,13 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
 
 SightLine KeptWindows::way_through(std::int64_t i, Index halfedge, const Vec2& point) const {
   const KeptWindow& w = windows_[i];
-  const Vec2 image(w.sx, w.sy), line = point - image;
-  const double straight = line.y() > 0 ? w.sx - line.x() * (w.sy / line.y()) : std::clamp(point.x(), w.b0, w.b1);
-  const double crossing = std::clamp(straight, w.b0, w.b1);
-  double distance = root_distance(surface_, propagation_, roots_[i]);
-  if (crossing == straight) {
-    distance += line.norm();
-  } else {  // round the window's end
-    const Vec2 end(crossing, 0);
-    distance += (end - image).norm() + (point - end).norm();
-  }
-  return {distance, crossing, halfedge, roots_[i], image};
+  const WayThrough way(w, root_distance(surface_, propagation_, roots_[i]), point);
+  return {way.distance, way.crossing, halfedge, roots_[i], {w.sx, w.sy}};
 }
 
 void KeptWindows::improve(Index halfedge, const Vec2& point, SightLine& best) const {
-  visit(halfedge, point, [&](const SightLine& way) {
-    if (way.distance < best.distance) best = way;
-  });
+  for (std::int64_t i = begins_[halfedge]; i < begins_[halfedge + 1]; ++i)
+    if (const SightLine way = way_through(i, halfedge, point); way.distance < best.distance) best = way;
 }
 
 std::size_t KeptWindows::nbytes() const {

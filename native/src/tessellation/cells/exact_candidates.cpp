@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "support/threads/parallel.h"
 #include "tessellation/bisectors/face_partition.h"
 
 namespace saddleback {
@@ -45,8 +46,8 @@ std::array<Vec3, 4> samples_of_part() {
   return {Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
 }
 
-SurfacePoint point_in(const FaceRefinement::Part& part, const Vec3& x) {
-  return {part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]};
+Vec3 place_in(const FaceRefinement::Part& part, const Vec3& x) {
+  return x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2];
 }
 
 /// Tells what the squared distances at the corners say in between, as for a point in the plane.
@@ -83,99 +84,162 @@ std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidat
 }  // namespace
 
 ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites, std::vector<double> tolerances,
-                       const JobStage& stage)
-    : field_(field), sites_(sites), tolerances_(std::move(tolerances)), refinement_(field.mesh()) {
+                       int threads, const JobStage& stage)
+    : field_(field), sites_(sites), tolerances_(std::move(tolerances)), threads_(threads), refinement_(field.mesh()) {
   look_at_mesh_vertices(stage.part(0, 0.3));
   const std::size_t most = k_some_parts + k_parts_each * (field.mesh().face_count() + sites.size());
-  looked_.assign(field.mesh().face_count(), k_none);
+  state_.assign(field.mesh().face_count(), State::due);
+  ways_of_.assign(field.mesh().face_count(), k_none);
   const double faces = field.mesh().face_count();
-  double looks = 0;  // how many parts more will be looked at than there are faces is not known
-  // The length of what is looked at, in tolerances, so that where parts run out all places are divided alike.
-  const auto size = [&](const FaceRefinement::Part& part) {
-    return std::ranges::max(part.length) / tolerance_of(part);
+  std::int64_t looks = 0;  // how many parts more will be looked at than there are faces is not known
+  const auto share = [&] {
+    const double of_faces = static_cast<double>(looks) / faces;
+    return of_faces <= 1 ? of_faces / 2 : 1 - 0.5 / of_faces;
   };
+  // Parts are looked at by length, so that where parts run out all places are divided alike.
   double least = 0;
-  for (const FaceRefinement::Part& part : refinement_.parts()) least = std::max(least, size(part));
+  for (const FaceRefinement::Part& part : refinement_.parts()) least = std::max(least, length_of(part));
+  Look look;
   for (bool goes_on = true; goes_on;) {  // what is told anew in one part is looked at in those beside
     goes_on = false;
     least = least > 1 ? least / k_finer : 0;
-    for (std::size_t part = 0; part < looked_.size(); ++part) {
-      if (is_looked_at(static_cast<Index>(part))) continue;
+    Index seen = 0;  // parts before it were looked at ahead
+    for (Index part = 0; part < static_cast<Index>(state_.size()); ++part) {
+      if (part == seen) seen = look_ahead(part, least, stage);
+      Look& at = next_->part == part ? *next_++ : look;
+      if (state_[part] == State::done) continue;
       goes_on = true;
-      if (size(refinement_.parts()[part]) < least) continue;
-      if (std::fmod(looks++, 64) == 0)
-        stage.update(0.3 + 0.7 * (looks <= faces ? looks / faces / 2 : 1 - faces / looks / 2));
-      const bool is_done = is_right(refinement_.parts()[part]);
-      looked_[part] = clock_;
-      if (!is_done && refinement_.parts().size() < most) divide(static_cast<Index>(part));
+      if (length_of(refinement_.parts()[part]) < least) continue;
+      if (looks++ % 64 == 0) stage.update(0.3 + 0.7 * share());
+      if (state_[part] == State::due) look_at(part, at);
+      state_[part] = State::done;
+      if (at.is_right)
+        tell_corners(at);
+      else if (refinement_.parts().size() < most)
+        divide(at);
     }
   }
-  order_.resize(refinement_.parts().size());
-  std::iota(order_.begin(), order_.end(), 0);
-  std::ranges::stable_sort(order_, {}, [&](Index part) { return refinement_.parts()[part].face; });
+  sort_parts();
 }
 
-void ExactParts::divide(Index part) {
-  std::vector<Index> changed;
-  refinement_.halve(part, changed);
+/// Looks at some parts from one on by all threads, in case nothing changes about them until it is their turn. Returns
+/// the part after them.
+Index ExactParts::look_ahead(Index part, double least, const JobStage& stage) {
+  constexpr std::size_t k_looks = 1024;  // few of which are lost: one in a hundred on scans
+  std::size_t count = 0;
+  looks_.resize(k_looks + 1);  // the last for none
+  for (; part < static_cast<Index>(state_.size()) && count < k_looks; ++part) {
+    if (state_[part] == State::done || length_of(refinement_.parts()[part]) < least) continue;
+    state_[part] = State::looked_at;
+    looks_[count++].part = part;
+  }
+  looks_[count].part = k_none;
+  parallel_for(static_cast<Index>(count), threads_, 16, [&](Index i, int) {
+    stage.check();
+    fetch(looks_.data() + i, looks_.data() + count);
+    look_at(looks_[i].part, looks_[i]);
+  });
+  next_ = looks_.data();
+  return part;
+}
+
+/// Asks for what the looks after one need: a third of the time would be waiting for memory.
+void ExactParts::fetch(const Look* look, const Look* end) const {
+  constexpr Index k_ahead = 4;
+  const auto corners = [&](Index ahead) -> std::span<const Index> {
+    if (end - look <= ahead) return {};
+    return refinement_.parts()[look[ahead].part].corner;
+  };
+  for (const Index corner : corners(2 * k_ahead)) __builtin_prefetch(&vertices_[corner]);
+  for (const Index corner : corners(k_ahead)) __builtin_prefetch(&known_[vertices_[corner].first]);
+}
+
+/// Sorts the parts by face, those of one face by number.
+void ExactParts::sort_parts() {
+  const std::vector<FaceRefinement::Part>& parts = refinement_.parts();
+  std::vector<Index> begins(field_.mesh().face_count() + 1, 0);
+  for (const FaceRefinement::Part& part : parts) ++begins[part.face + 1];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  order_.resize(parts.size());
+  for (std::size_t part = 0; part < parts.size(); ++part) order_[begins[parts[part].face]++] = static_cast<Index>(part);
+}
+
+void ExactParts::divide(const Look& look) {
+  Index& ways = ways_of_[look.part];
+  if (ways == k_none || 4 * look.ways().size() <= 3 * ways_to_[ways].size()) {
+    ways = static_cast<Index>(ways_to_.size());
+    ways_to_.push_back(look.ways());
+  }
+  changed_.clear();
+  refinement_.halve(look.part, changed_);
+  ways_of_.resize(refinement_.parts().size());
+  state_.resize(refinement_.parts().size());
+  for (std::size_t i = 0; i < changed_.size(); i += 2) ways_of_[changed_[i + 1]] = ways_of_[changed_[i]];
+  for (const Index other : changed_) state_[other] = State::due;
   look_at_added();
-  looked_.resize(refinement_.parts().size());
-  for (const Index other : changed) looked_[other] = k_none;
 }
 
-bool ExactParts::is_looked_at(Index part) const {
-  return std::ranges::all_of(refinement_.parts()[part].corner,
-                             [&](Index corner) { return told_[corner] <= looked_[part]; });
-}
-
-void ExactParts::find_ways(const SurfacePoint& place, Ways& ways) const {
-  field_.ways_at(place, ways);
+void ExactParts::find_ways(const WaysToFace& to_face, const Vec3& place, Ways& ways) const {
+  to_face.at(place, ways);
   for (Way& way : ways) way.source = sites_[way.source];
 }
 
-void ExactParts::add_distances(const SurfacePoint& place, Distances& distances) const {
-  Ways found;
-  find_ways(place, found);
-  for (const Way& way : found) {
+void ExactParts::add_distances(const WaysToFace& to_face, const Vec3& place, Distances& distances) {
+  find_ways(to_face, place, found_);
+  for (const Way& way : found_) {
     const auto known = std::ranges::lower_bound(distances, way.source, {}, &Known::source);
     if (known == distances.end() || known->source != way.source)
-      distances.insert(known, {way.source, way.distance});
+      distances.insert(known, {way.source, false, way.distance, 0});
     else
       known->distance = std::min(known->distance, way.distance);
   }
 }
 
-void ExactParts::set_nearest(Index vertex) {
-  nearest_[vertex] = {k_none, k_infinity};
-  for (const Known& known : distances_[vertex])
-    if (known.distance < nearest_[vertex].distance) nearest_[vertex] = {known.source, known.distance};
+void ExactParts::tell(Index vertex, const Distances& distances) {
+  Vertex& at = vertices_[vertex];
+  if (static_cast<Index>(distances.size()) != at.count) {
+    at.first = known_.size();
+    at.count = static_cast<Index>(distances.size());
+    known_.resize(known_.size() + distances.size());
+  }
+  std::ranges::copy(distances, known_.data() + at.first);
+}
+
+void ExactParts::add_vertex(const Distances& distances) {
+  ExactField::Sight nearest{k_none, k_infinity};
+  for (const Known& known : distances)
+    if (known.distance < nearest.distance) nearest = {known.source, known.distance};
+  vertices_.push_back({nearest.distance, nearest.source, 0, 0});
+  tell(static_cast<Index>(vertices_.size()) - 1, distances);
 }
 
 void ExactParts::look_at_mesh_vertices(const JobStage& stage) {
   const Mesh& mesh = field_.mesh();
-  distances_.resize(mesh.vertex_count());
-  nearest_.resize(mesh.vertex_count());
-  told_.assign(mesh.vertex_count(), 0);
+  std::vector<Distances> distances(mesh.vertex_count());
   for (Index face = 0; face < mesh.face_count(); ++face) {
     if (face % 256 == 0) stage.update(static_cast<double>(face) / mesh.face_count());
-    for (int i = 0; i < 3; ++i) add_distances({face, Vec3::Unit(i)}, distances_[mesh.triangles()[face][i]]);
+    const WaysToFace to_face = field_.ways_to(face);
+    for (int i = 0; i < 3; ++i) add_distances(to_face, Vec3::Unit(i), distances[mesh.triangles()[face][i]]);
   }
-  for (Index vertex = 0; vertex < mesh.vertex_count(); ++vertex) set_nearest(vertex);
+  for (const Distances& at_vertex : distances) add_vertex(at_vertex);
 }
 
 void ExactParts::look_at_added() {
-  for (auto vertex = static_cast<Index>(distances_.size()); vertex < refinement_.vertex_count(); ++vertex) {
+  Distances distances;
+  for (auto vertex = static_cast<Index>(vertices_.size()); vertex < refinement_.vertex_count(); ++vertex) {
     const FaceRefinement::Added& added = refinement_.added()[vertex - field_.mesh().vertex_count()];
-    Distances& distances = distances_.emplace_back();
-    for (int i = 0; i < added.faces; ++i) add_distances(added.at[i], distances);
-    nearest_.emplace_back();
-    told_.push_back(clock_);
-    set_nearest(vertex);
+    distances.clear();
+    for (int i = 0; i < added.faces; ++i) {
+      const auto& [face, place] = added.at[i];
+      const Index known = ways_of_[added.part[i]];
+      add_distances(known == k_none ? field_.ways_to(face) : ways_to_[known], place, distances);
+    }
+    add_vertex(distances);
   }
 }
 
 ExactParts::Corners ExactParts::corners_of(const FaceRefinement::Part& part) const {
-  return {&distances_[part.corner[0]], &distances_[part.corner[1]], &distances_[part.corner[2]]};
+  return {distances_of(part.corner[0]), distances_of(part.corner[1]), distances_of(part.corner[2])};
 }
 
 void ExactParts::find_candidates(const FaceRefinement::Part& part, std::vector<FaceCandidate>& candidates) const {
@@ -187,75 +251,92 @@ void ExactParts::find_candidates(const FaceRefinement::Part& part, const Corners
                                  std::vector<FaceCandidate>& candidates) const {
   candidates.clear();
   const std::array<double, 3>& length = part.length;
-  std::array<Distances::const_iterator, 3> next;
-  std::array<ExactField::Sight, 3> nearest;
+  std::array<const Known*, 3> next, end;
+  std::array<ExactField::Sight, 3> first;
   std::array<double, 3> squared, beyond;  // of the nearest site's distances, and the next number above
   for (int i = 0; i < 3; ++i) {
-    next[i] = corners[i]->begin();
-    nearest[i] = nearest_[part.corner[i]];
-    squared[i] = nearest[i].distance * nearest[i].distance;
+    next[i] = corners[i].data();
+    end[i] = next[i] + corners[i].size();
+    first[i] = nearest(part.corner[i]);
+    squared[i] = first[i].distance * first[i].distance;
     beyond[i] = std::nextafter(squared[i], k_infinity);
   }
   while (true) {  // the corners' lists, which are by source, are read side by side
     Index source = std::numeric_limits<Index>::max();
     for (int i = 0; i < 3; ++i)
-      if (next[i] != corners[i]->end()) source = std::min(source, next[i]->source);
+      if (next[i] != end[i]) source = std::min(source, next[i]->source);
     if (source == std::numeric_limits<Index>::max()) return;
     std::array<double, 3> distance, least;
     for (int i = 0; i < 3; ++i) {
-      const bool is_known = next[i] != corners[i]->end() && next[i]->source == source;
+      const bool is_known = next[i] != end[i] && next[i]->source == source;
       distance[i] = is_known ? (next[i]++)->distance : k_infinity;
     }
     bool may_own = true, is_nearest = false;  // the latter whatever rounding says of the former
     for (int i = 0; i < 3; ++i) {
       const double to_next = length[i], to_last = length[(i + 2) % 3];
       least[i] = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
-      may_own = may_own && least[i] - nearest[i].distance <= 2 * std::max(to_next, to_last);
-      is_nearest = is_nearest || nearest[i].source == source;
+      may_own = may_own && least[i] - first[i].distance <= 2 * std::max(to_next, to_last);
+      is_nearest = is_nearest || first[i].source == source;
     }
     if (!may_own && !is_nearest) continue;
     FaceCandidate candidate{part.face, source, {}};
     // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
     for (int i = 0; i < 3; ++i)
-      candidate.squared_distance[i] =
-          nearest[i].source == source ? squared[i] : std::max(least[i] * least[i], beyond[i]);
+      candidate.squared_distance[i] = first[i].source == source ? squared[i] : std::max(least[i] * least[i], beyond[i]);
     candidates.push_back(candidate);
   }
 }
 
-bool ExactParts::is_right(const FaceRefinement::Part& part) {
+void ExactParts::look_at(Index index, Look& look) const {
+  look.part = index;
+  look.tells = false;
+  look.is_right = is_right(refinement_.parts()[index], look);
+}
+
+bool ExactParts::is_right(const FaceRefinement::Part& part, Look& look) const {
   const double whole = tolerance_of(part);
   if (std::ranges::max(part.length) <= k_unbent * whole / 2) return true;
-  std::vector<FaceCandidate> candidates;
+  std::vector<FaceCandidate>& candidates = look.candidates;
   find_candidates(part, candidates);
   if (candidates.size() == 1) return true;
   const std::array<Vec3, 4> samples = samples_of_part();
-  for (std::size_t i = 0; i < samples.size(); ++i) find_ways(point_in(part, samples[i]), at_samples_[i]);
+  find_ways_inside(part, look);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    find_ways(look.ways(), place_in(part, samples[i]), look.at_samples[i]);
   const auto is_rival = [&](const Way& way) {
     const auto candidate = std::ranges::find(candidates, way.source, &FaceCandidate::site);
     return candidate != candidates.end() && !is_beaten(*candidate, candidates);
   };
-  const bool bends = std::ranges::any_of(at_samples_, [&](const Ways& ways) {
+  const bool bends = std::ranges::any_of(look.at_samples, [&](const Ways& ways) {
     return std::ranges::any_of(ways, [&](const Way& way) { return way.before > 0 && is_rival(way); });
   });
   if (bends && std::ranges::max(part.length) <= whole / 2) return true;
   const double tolerance = bends ? whole : k_unbent * whole;
-  const bool is_as_told = fits(part, candidates, nullptr, tolerance) && owners_are_nearest(part, candidates, tolerance);
-  return is_as_told || straighten(part, candidates, tolerance);
+  const bool is_as_told = fits(part, candidates, look, nullptr, tolerance) && owners_are_nearest(part, look, tolerance);
+  return is_as_told || straighten(part, look, tolerance);
+}
+
+/// Finds the ways that matter in a part, among those that are known of what it is a half of.
+void ExactParts::find_ways_inside(const FaceRefinement::Part& part, Look& look) const {
+  const Index known = ways_of_[look.part];
+  if (known == k_none) look.found = field_.ways_to(part.face);
+  look.known = known == k_none ? &look.found : &ways_to_[known];
+  look.are_fewer = look.known->size() > 2 * look.known->source_count();  // else finding out would not pay
+  if (look.are_fewer) look.known->find_inside(part.place, look.inside);
 }
 
 /// Tells whether the sites that own the places beside the bisectors are nearest there: one that a sample does not see
 /// may be told, from the corners, to come between the others where it does not.
-bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
-                                    double tolerance) const {
+bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const Look& look, double tolerance) const {
+  const std::vector<FaceCandidate>& candidates = look.candidates;
   const auto is_seen = [&](const FaceCandidate& candidate) {
-    return is_beaten(candidate, candidates) || std::ranges::all_of(at_samples_, [&](const Ways& ways) {
+    return is_beaten(candidate, candidates) || std::ranges::all_of(look.at_samples, [&](const Ways& ways) {
              return find_source(ways, candidate.site) != nullptr;
            });
   };
   if (std::ranges::all_of(candidates, is_seen)) return true;
   for (const Vec3& x : places_by_bisectors(candidates)) {
-    const Index nearest = sites_[field_.nearest_at(point_in(part, x)).source];
+    const Index nearest = sites_[look.ways().nearest_at(place_in(part, x)).source];
     double least = k_infinity, of_nearest = k_infinity;
     for (const FaceCandidate& candidate : candidates) {
       const double distance = distance_at(part, candidate, x);
@@ -270,15 +351,15 @@ bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const std:
 /// Looks at what the sites' distances at the samples are more than the corners say. Among sites that own something
 /// there it must be the same: what it is moves no bisector. Others may be behind by less, but by no more than half of
 /// what they are farther away. `straight`: the ways by which the former go, else each by its shortest.
-bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
+bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Look& look,
                       const Ways* straight, double tolerance) const {
   std::vector<std::uint8_t> is_rival;
   for (const FaceCandidate& candidate : candidates) is_rival.push_back(!is_beaten(candidate, candidates));
   // Corners are samples, too, where more is told of a site than its distance: what the others see lies between.
   if (!straight)
-    for (const Distances* const corner : corners_of(part))
+    for (const std::span<const Known> corner : corners_of(part))
       for (std::size_t i = 0; i < candidates.size(); ++i)
-        if (const Known* const known = find_source(*corner, candidates[i].site);
+        if (const Known* const known = find_source(corner, candidates[i].site);
             is_rival[i] && known && std::abs(known->excess) > tolerance)
           return false;
   const std::array<Vec3, 4> samples = samples_of_part();
@@ -286,10 +367,11 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCa
     const Vec3& x = samples[s];
     double first = k_infinity, least = k_infinity, most = -k_infinity;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const Way* const way = find_source(straight ? *straight : at_samples_[s], candidates[i].site);
+      const Way* const way = find_source(straight ? *straight : look.at_samples[s], candidates[i].site);
       if (straight && is_rival[i] && !way) return false;
       if (!is_rival[i] || !way) continue;
-      const double distance = straight ? way->straight_to(field_.place_of(point_in(part, x))) : way->distance;
+      const double distance =
+          straight ? way->straight_to(field_.place_of({part.face, place_in(part, x)})) : way->distance;
       const double expected = distance_at(part, candidates[i], x);
       first = std::min(first, expected);
       least = std::min(least, distance - expected);
@@ -297,7 +379,7 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCa
     }
     if (most - least > tolerance) return false;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const Way* const way = find_source(at_samples_[s], candidates[i].site);
+      const Way* const way = find_source(look.at_samples[s], candidates[i].site);
       if (is_rival[i] || !way) continue;
       const double expected = distance_at(part, candidates[i], x), more = way->distance - expected;
       if (most - more > std::max(tolerance, (expected - first) / 2)) return false;
@@ -307,12 +389,12 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCa
 }
 
 /// Finds of each candidate's site the way at the sample where the site is nearest, or least behind the nearest.
-ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceCandidate>& candidates) const {
+ExactParts::Ways ExactParts::ways_seen(const Look& look) const {
   Ways seen;
-  for (const FaceCandidate& candidate : candidates) {
+  for (const FaceCandidate& candidate : look.candidates) {
     double least = k_infinity;
     const Way* best = nullptr;
-    for (const Ways& ways : at_samples_) {
+    for (const Ways& ways : look.at_samples) {
       const Way* const way = find_source(ways, candidate.site);
       if (!way) continue;
       const double lead = way->distance - std::ranges::min(ways, {}, &Way::distance).distance;
@@ -324,54 +406,59 @@ ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceCandidate>& candida
 }
 
 /// Tells whether the shortest of straight ways is as long as the distance, at places in the part.
-bool ExactParts::explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const {
+bool ExactParts::explain(const FaceRefinement::Part& part, const Look& look, const Ways& ways,
+                         std::span<const Vec3> places) const {
   for (const Vec3& x : places) {
-    const SurfacePoint point = point_in(part, x);
-    const Vec2 place = field_.place_of(point);
+    const Vec3 inside = place_in(part, x);
+    const Vec2 place = field_.place_of({part.face, inside});
     double least = k_infinity;
     for (const Way& way : ways) least = std::min(least, way.straight_to(place));
-    if (std::abs(least - field_.nearest_at(point).distance) > k_explained * tolerance_of(part)) return false;
+    if (std::abs(least - look.ways().nearest_at(inside).distance) > k_explained * tolerance_of(part)) return false;
   }
   return true;
 }
 
 /// Tells how far sites are from the part's corners, where they are not nearest, as if the surface went on; only if the
 /// part is right then.
-bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
-                            double tolerance) {
-  Ways ways = ways_seen(candidates);
+bool ExactParts::straighten(const FaceRefinement::Part& part, Look& look, double tolerance) const {
+  Ways ways = ways_seen(look);
   std::erase_if(ways, [&](const Way& way) {
-    const auto candidate = std::ranges::find(candidates, way.source, &FaceCandidate::site);
-    return is_beaten(*candidate, candidates);
+    const auto candidate = std::ranges::find(look.candidates, way.source, &FaceCandidate::site);
+    return is_beaten(*candidate, look.candidates);
   });
-  if (!explain(part, ways, samples_of_part())) return false;
-  std::array<Distances, 3> told;
+  if (!explain(part, look, ways, samples_of_part())) return false;
+  std::array<Distances, 3>& told = look.told;
   for (int i = 0; i < 3; ++i) {
-    told[i] = distances_[part.corner[i]];
-    const ExactField::Sight& nearest = nearest_[part.corner[i]];
+    const std::span<const Known> before = distances_of(part.corner[i]);
+    told[i].assign(before.begin(), before.end());
+    const ExactField::Sight at_corner = nearest(part.corner[i]);
     const Vec2 place = field_.place_of({part.face, part.place[i]});
     for (const Way& way : ways) {
-      if (way.source == nearest.source) continue;
+      if (way.source == at_corner.source) continue;
       const double distance = way.straight_to(place);
-      if (distance <= nearest.distance) return false;
+      if (distance <= at_corner.distance) return false;
       const auto known = std::ranges::lower_bound(told[i], way.source, {}, &Known::source);
       if (known == told[i].end() || known->source != way.source)
-        told[i].insert(known, {way.source, distance, true});
+        told[i].insert(known, {way.source, true, distance, 0});
       else if (!known->is_straight)
-        *known = {way.source, distance, true, distance - known->distance};
+        *known = {way.source, true, distance, distance - known->distance};
     }
   }
   std::vector<FaceCandidate> straight;
-  find_candidates(part, {&told[0], &told[1], &told[2]}, straight);
-  if (!fits(part, straight, &ways, tolerance) || !explain(part, ways, places_by_bisectors(straight))) return false;
-  ++clock_;
+  find_candidates(part, {told[0], told[1], told[2]}, straight);
+  look.tells = fits(part, straight, look, &ways, tolerance) && explain(part, look, ways, places_by_bisectors(straight));
+  return look.tells;
+}
+
+void ExactParts::tell_corners(const Look& look) {
+  if (!look.tells) return;
+  const FaceRefinement::Part& part = refinement_.parts()[look.part];
   for (int i = 0; i < 3; ++i) {
-    Distances& now = distances_[part.corner[i]];
-    if (std::ranges::equal(now, told[i], {}, &Known::distance, &Known::distance)) continue;
-    now = std::move(told[i]);
-    told_[part.corner[i]] = clock_;
+    if (std::ranges::equal(distances_of(part.corner[i]), look.told[i], {}, &Known::distance, &Known::distance))
+      continue;
+    tell(part.corner[i], look.told[i]);
+    refinement_.visit_about(look.part, i, [&](Index other) { state_[other] = State::due; });
   }
-  return true;
 }
 
 ExactCandidates::ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count)

@@ -1,8 +1,11 @@
 #pragma once
 // Candidates by exact distances, on faces divided so finely that squared distances are what one plane would say.
 
+#include <deque>
+
 #include "saddleback/geodesics/exact_distances.h"
 
+#include "geodesics/exact/ways_to_face.h"
 #include "tessellation/cells/face_candidates.h"
 #include "tessellation/cells/face_refinement.h"
 
@@ -19,13 +22,13 @@ class ExactParts {
  public:
   /// `sites`: the sites that are the field's sources, in increasing order; cells are numbered by them. `tolerances`:
   /// of distances, mesh units, by the mesh's component. The others must outlive the parts. \throw Cancelled.
-  ExactParts(const ExactField& field, const std::vector<Index>& sites, std::vector<double> tolerances,
+  ExactParts(const ExactField& field, const std::vector<Index>& sites, std::vector<double> tolerances, int threads,
              const JobStage& stage);
 
   const FaceRefinement& refinement() const { return refinement_; }
   /// Values by face of the mesh.
   const std::vector<Index>& order() const { return order_; }
-  const ExactField::Sight& nearest(Index vertex) const { return nearest_[vertex]; }
+  ExactField::Sight nearest(Index vertex) const { return {vertices_[vertex].source, vertices_[vertex].distance}; }
   /// The sites that may own something of a part, by site.
   void find_candidates(const FaceRefinement::Part& part, std::vector<FaceCandidate>& candidates) const;
 
@@ -35,44 +38,84 @@ class ExactParts {
   /// The distance of a site from a vertex, in all its faces.
   struct Known {
     Index source;
+    bool is_straight;  ///< told as if the surface went on
     double distance;
-    bool is_straight = false;  ///< told as if the surface went on
-    double excess = 0;         ///< what is told then, beyond the distance that is known
+    double excess;  ///< what is told then, beyond the distance that is known
   };
   using Distances = std::vector<Known>;  ///< by site
-  using Corners = std::array<const Distances*, 3>;
+  using Corners = std::array<std::span<const Known>, 3>;
+  struct Vertex {
+    double distance;      ///< of the nearest source
+    Index source, count;  ///< the nearest; of those that are known
+    std::size_t first;
+  };
+  enum class State : std::uint8_t {
+    due,        ///< not looked at yet, or not since something changed about it
+    looked_at,  ///< ahead of its turn
+    done
+  };
+  /// Holds what is found of a part.
+  struct Look {
+    Index part = k_none;
+    bool is_right = false, tells = false;
+    std::array<Distances, 3> told;  ///< of its corners, if it tells
+    std::vector<FaceCandidate> candidates;
+    std::array<Ways, 4> at_samples;
+    WaysToFace found, inside;           ///< the ways, where they are not known, and those that matter, where fewer
+    const WaysToFace* known = nullptr;  ///< may be `found`
+    bool are_fewer = false;
+    const WaysToFace& ways() const { return are_fewer ? inside : *known; }
+  };
+  Index look_ahead(Index part, double least, const JobStage& stage);
+  void look_at(Index index, Look& look) const;
+  void tell_corners(const Look& look);
+  void fetch(const Look* look, const Look* end) const;
+  void sort_parts();
   void look_at_mesh_vertices(const JobStage& stage);
   void look_at_added();
-  void find_ways(const SurfacePoint& place, Ways& ways) const;
-  void add_distances(const SurfacePoint& place, Distances& distances) const;
-  void set_nearest(Index vertex);
+  void find_ways(const WaysToFace& to_face, const Vec3& place, Ways& ways) const;
+  void add_distances(const WaysToFace& to_face, const Vec3& place, Distances& distances);
+  void add_vertex(const Distances& distances);
+  void tell(Index vertex, const Distances& distances);
+  std::span<const Known> distances_of(Index vertex) const {
+    return {known_.data() + vertices_[vertex].first, static_cast<std::size_t>(vertices_[vertex].count)};
+  }
   Corners corners_of(const FaceRefinement::Part& part) const;
   void find_candidates(const FaceRefinement::Part& part, const Corners& corners,
                        std::vector<FaceCandidate>& candidates) const;
-  void divide(Index part);
-  bool is_looked_at(Index part) const;
-  double tolerance_of(const FaceRefinement::Part& part) const {
-    return tolerances_[field_.mesh().component_of(field_.mesh().triangles()[part.face][0])];
+  void divide(const Look& look);
+  /// The length of a part, in tolerances.
+  double length_of(const FaceRefinement::Part& part) const {
+    return std::ranges::max(part.length) / tolerance_of(part);
   }
-  bool is_right(const FaceRefinement::Part& part);
-  bool fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Ways* straight,
-            double tolerance) const;
-  bool owners_are_nearest(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
-                          double tolerance) const;
-  Ways ways_seen(const std::vector<FaceCandidate>& candidates) const;
-  bool explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const;
-  bool straighten(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, double tolerance);
+  double tolerance_of(const FaceRefinement::Part& part) const {
+    return tolerances_.size() == 1 ? tolerances_[0]
+                                   : tolerances_[field_.mesh().component_of(field_.mesh().triangles()[part.face][0])];
+  }
+  bool is_right(const FaceRefinement::Part& part, Look& look) const;
+  void find_ways_inside(const FaceRefinement::Part& part, Look& look) const;
+  bool fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Look& look,
+            const Ways* straight, double tolerance) const;
+  bool owners_are_nearest(const FaceRefinement::Part& part, const Look& look, double tolerance) const;
+  Ways ways_seen(const Look& look) const;
+  bool explain(const FaceRefinement::Part& part, const Look& look, const Ways& ways,
+               std::span<const Vec3> places) const;
+  bool straighten(const FaceRefinement::Part& part, Look& look, double tolerance) const;
 
   const ExactField& field_;
   const std::vector<Index>& sites_;
   const std::vector<double> tolerances_;  ///< by component
+  const int threads_;
   FaceRefinement refinement_;
-  std::vector<Distances> distances_;  ///< by vertex
-  std::vector<ExactField::Sight> nearest_;
-  std::array<Ways, 4> at_samples_;  ///< of the part that is looked at
-  Index clock_ = 0;                 ///< counts what is told anew
-  std::vector<Index> told_;         ///< by vertex: when its distances were told
-  std::vector<Index> looked_;       ///< by part: when it was found to be right, k_none: not yet
+  LargeArray<Vertex> vertices_;
+  LargeArray<Known> known_;         ///< of vertices, by source
+  std::deque<WaysToFace> ways_to_;  ///< shared by the halves of a part
+  std::vector<Index> ways_of_;      ///< by part: which of those, k_none: not found yet
+  Ways found_;                      ///< for add_distances alone
+  std::vector<State> state_;        ///< by part
+  std::vector<Look> looks_;         ///< ahead, then one of no part
+  Look* next_ = nullptr;            ///< the first of them whose turn has not come
+  std::vector<Index> changed_;
   std::vector<Index> order_;
 };
 

@@ -48,7 +48,7 @@ void FaceRefinement::halve(Index part, std::vector<Index>& changed) {
   const auto middle_in = [&](const Part& p, int i) {
     return SurfacePoint{p.face, 0.5 * (p.place[i] + p.place[(i + 1) % 3])};
   };
-  Added added{{middle_in(parts_[part], edge), {}}, 1};
+  Added added{{middle_in(parts_[part], edge), {}}, {part, other}, 1};
   if (other != k_none && parts_[other].face != parts_[part].face) {
     added.at[1] = middle_in(parts_[other], other_edge);
     added.faces = 2;

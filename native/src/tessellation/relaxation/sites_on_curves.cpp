@@ -11,6 +11,8 @@
 #include "saddleback/geodesics/exact_distances.h"
 #include "saddleback/mesh/sample.h"
 
+#include "geodesics/exact/ways_to_face.h"
+
 namespace saddleback {
 namespace {
 
@@ -78,6 +80,7 @@ void look_from(const CurveSegment& segment, const ExactField& field, NearestOnCu
     nearest.take(segment, share, distance);
     return distance;
   };
+  WaysToFace to_face;
   std::vector<ExactField::Way> ways;
   std::vector<Part> parts{{0, 1, take(0), take(1)}};
   while (!parts.empty()) {
@@ -86,7 +89,8 @@ void look_from(const CurveSegment& segment, const ExactField& field, NearestOnCu
     const double width = part.end - part.begin, least = (part.at_begin + part.at_end - width * segment.length) / 2;
     if (width < k_finest || !(least < nearest.distance)) continue;
     const double middle = part.begin + width / 2, at_middle = take(middle);
-    field.ways_at(at(middle), ways);
+    if (to_face.size() == 0) to_face = field.ways_to(segment.face);
+    to_face.at(at(middle).barycentric, ways);
     take(foot_of(ways.front().image, field.place_of(at(0)), field.place_of(at(1))).share);
     parts.push_back({part.begin, middle, part.at_begin, at_middle});
     parts.push_back({middle, part.end, at_middle, part.at_end});
