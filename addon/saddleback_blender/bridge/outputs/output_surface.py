@@ -100,7 +100,8 @@ def has_own_faces(context: bpy.types.Context, source: bpy.types.Object) -> bool:
 def _same_shape(
     context: bpy.types.Context, source: bpy.types.Object, other: bpy.types.Object, use_modifiers: bool
 ) -> bool:
-    with mesh_of(context, source, use_modifiers, has_layers=False) as mesh:
+    # With layers, as it was made: what Blender drew by the GPU may differ in the last bit.
+    with mesh_of(context, source, use_modifiers) as mesh:
         return _equal_faces(mesh, other.data) and np.array_equal(
             compat.read_positions(mesh), compat.read_positions(other.data)
         )
