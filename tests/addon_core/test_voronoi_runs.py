@@ -49,7 +49,7 @@ def test_the_plane_of_a_turned_mesh():
     np.testing.assert_allclose(frame.axes @ frame.axes.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(frame.axes) == pytest.approx(1) and abs(frame.axes[0] @ frame.axes[2]) < 1e-12
     places = frame.to_plane(surface.vertices)
-    np.testing.assert_allclose(frame.to_world(places), surface.vertices, atol=1e-12)
+    np.testing.assert_allclose(frame.to_space(places), surface.vertices, atol=1e-12)
     a, b, c = (places[triangles[:, k]] for k in range(3))
     assert ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0] > 0).all()
 

@@ -21,7 +21,7 @@ LOOK = 0.02  # seconds between looks at the relaxation
 
 @dataclass(frozen=True)
 class LiveStep:
-    """The lines between the cells after some iterations, in the world."""
+    """The lines between the cells after some iterations."""
 
     lines: EdgeNetwork
     iterations: int

@@ -229,7 +229,7 @@ def _numbers_with_added(twins: Indices, added: int) -> tuple[Indices, Indices]:
 
 
 def _on_whole(points: Reals, mirror: Mirror, progress: Progress) -> tuple[Indices, Reals]:
-    """Where world places are on the whole surface: triangles of the Blender mesh (n,), weights (n, 3)."""
+    """Where places are on the whole surface: triangles of the Blender mesh (n,), weights (n, 3)."""
     found = native.load().project(_whole_mesh(mirror, progress), points)
     return mirror.whole.of_mesh(np.asarray(found.faces, np.int32)), np.asarray(found.barycentric)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Holds what a run answers: frozen dataclasses of numpy arrays in world space, with the Blender mesh's own vertex
-numbers.
+"""Holds what a run answers: frozen dataclasses of numpy arrays in the surface's space, with the Blender mesh's own
+vertex numbers.
 """
 
 from __future__ import annotations
@@ -291,7 +291,7 @@ class SurfaceArrows:
 
 @dataclass(frozen=True)
 class FieldResult:
-    """A field of directions in the world, and what shows it."""
+    """A field of directions, and what shows it."""
 
     symmetry: int
     domain: str  # POINT, FACE
@@ -308,7 +308,7 @@ class FieldResult:
 
 @dataclass(frozen=True)
 class PlacedShapes:
-    """n shapes on a surface, as rigid copies stand there, in the world."""
+    """n shapes on a surface, as rigid copies stand there."""
 
     shape: Indices  # (n,) class
     points: Reals  # (n, 3) the center
@@ -326,14 +326,14 @@ class Anchors:
 
     corners: Indices  # (n, 3) the triangles' vertices, numbered as in the Blender mesh
     barycentric: Reals  # (n, 3)
-    offset: Reals  # (n, 3) from there to the points, in the world
+    offset: Reals  # (n, 3) from there to the points
 
 
 @dataclass(frozen=True)
 class BentCopies:
     """Polygon i runs through corners[offsets[i]:offsets[i + 1]], counter-clockwise from outside."""
 
-    vertices: Reals  # (n, 3) in the world
+    vertices: Reals  # (n, 3)
     faces: Indices  # (n,) of the surface's triangles, where the vertices stand
     barycentric: Reals  # (n, 3)
     corners: Indices

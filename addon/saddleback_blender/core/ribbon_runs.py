@@ -32,7 +32,7 @@ MOST_WIDTHS = 300  # in the length of a band: its map takes some ten seconds
 
 @dataclass(frozen=True)
 class RibbonResult:
-    """Ribbons as one mesh in the world, and what a person is told of them."""
+    """Ribbons as one mesh, and what a person is told of them."""
 
     solid: Solid
     anchors: Anchors  # of its vertices

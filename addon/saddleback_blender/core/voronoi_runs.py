@@ -346,14 +346,14 @@ def _repeating(tile: Tile, base: Any, plateau: Any, count: int, frame: PlaneFram
     local = np.column_stack([tile.seen(whole.vertices[:, :2]), whole.vertices[:, 2]])
     cut = cut_to_tile(replace(whole, vertices=local), tile.size, shape.underside)
     heights = cut.vertices[:, 2:] * frame.axes[2]
-    return replace(cut, vertices=frame.to_world(tile.shown(cut.vertices[:, :2])) + heights)
+    return replace(cut, vertices=frame.to_space(tile.shown(cut.vertices[:, :2])) + heights)
 
 
 def _bare_cells(space: Space, sites: _Sites, areas: Reals) -> CellsResult:
     """Sites and areas, without edges and pieces."""
     vertices, triangles = space.mesh.vertices, space.mesh.triangles
     if space.frame is not None:
-        positions = space.frame.to_world(sites.places)
+        positions = space.frame.to_space(sites.places)
         normals: Reals = np.tile(space.frame.axes[2], (len(positions), 1))
     else:
         assert sites.faces is not None and sites.barycentric is not None

@@ -23,7 +23,7 @@ LENGTH = "saddleback_length"  # custom property of the paths object: the sum of 
 
 @dataclass(frozen=True)
 class Lines:
-    """Polylines in the world, one after another."""
+    """Polylines, one after another."""
 
     points: Reals  # (n, 3)
     parts: tuple[tuple[slice, bool], ...]  # of each where its points are, and whether it is closed

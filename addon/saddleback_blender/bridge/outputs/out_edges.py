@@ -44,7 +44,7 @@ def write_network(
     role: str,
     follower: Follower | None = None,
 ) -> bpy.types.Object:
-    """Writes the same from lines that are joined already, in the world."""
+    """Writes the same from lines that are joined already."""
     material = nodes.edges_material()
     if settings.edge_kind == "CURVE":
         # Few and long splines, because Blender's cost is by the spline.

@@ -33,7 +33,7 @@ class ArrowMesh:
 
 
 def arrow_mesh(field: FieldResult) -> ArrowMesh:
-    """The arrows of a field and its singularities as one mesh in the world."""
+    """The arrows of a field and its singularities as one mesh."""
     arrows = field.arrows
     assert arrows is not None
     outline = OUTLINES[field.symmetry] * arrows.length

@@ -58,7 +58,7 @@ def class_sizes(
 
 
 def kept_placements(kept: KeptShapes, mesh: Any, name: str) -> Any:
-    """Placements of shapes as they lie in the world. Raises BadInputError where one lies off the surface."""
+    """Placements of shapes as they lie. Raises BadInputError where one lies off the surface."""
     sb = native.load()
     center = sb.project(mesh, kept.points)
     away = np.linalg.norm(center.positions(mesh) - kept.points, axis=1)

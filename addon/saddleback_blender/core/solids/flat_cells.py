@@ -15,7 +15,7 @@ SAME_CORNER = 2.0**-30
 
 
 def flat_cells(clipped: Any, frame: PlaneFrame) -> FlatCells:
-    """The library's ClippedCells -> polygons and edges in the world. O(n log n)."""
+    """The library's ClippedCells -> polygons and edges in space. O(n log n)."""
     points, offsets, sites = clipped.points, clipped.loop_offsets, clipped.loop_sites
     vertices, corners = _welded(points)
     loop = np.repeat(np.arange(len(sites), dtype=np.int32), np.diff(offsets))
@@ -30,7 +30,7 @@ def flat_cells(clipped: Any, frame: PlaneFrame) -> FlatCells:
     corners, ends, cells = corners[kept], ends[kept], sites[loop[kept]]
     edges, edge_cells = _edges(corners, ends, cells, len(vertices))
     return FlatCells(
-        vertices=frame.to_world(vertices),
+        vertices=frame.to_space(vertices),
         corners=corners,
         offsets=np.concatenate([[0], np.cumsum(counts[alive])]).astype(np.int32),
         polygon_cell=sites[alive],

@@ -154,7 +154,7 @@ class _Polygons:
 
     def _add(self, places: Reals, heights: Reals) -> int:
         first = self._size
-        self._vertices.append(self._frame.to_world(places) + heights[:, None] * self._frame.axes[2])
+        self._vertices.append(self._frame.to_space(places) + heights[:, None] * self._frame.axes[2])
         self._size += len(places)
         return first
 

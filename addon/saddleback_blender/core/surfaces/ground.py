@@ -23,7 +23,7 @@ class Ground:
     mesh: Any  # the library's
 
     def anchors(self, points: Reals, feet: Reals | None, progress: Progress) -> Anchors:
-        """Points (n, 3) in the world, and the triangles next to their feet (n, 3), by default to themselves.
+        """Points (n, 3), and the triangles next to their feet (n, 3), by default to themselves.
 
         Those of points that were asked for before are kept. O(n log F).
         """

@@ -17,18 +17,18 @@ FLATNESS = 1e-4
 
 @dataclass(frozen=True)
 class PlaneFrame:
-    """An origin (3,) and the rows x, y, normal of (3, 3); x is the world's X where the plane lets it."""
+    """An origin (3,) and the rows x, y, normal of (3, 3); x is the surface's X where the plane lets it."""
 
     origin: Reals
     axes: Reals
 
     def to_plane(self, points: Reals) -> Reals:
-        """(n, 3) world -> (n, 2), along the normal."""
+        """(n, 3) -> (n, 2), along the normal."""
         flat: Reals = (points - self.origin) @ self.axes[:2].T
         return flat
 
-    def to_world(self, places: Reals) -> Reals:
-        """(n, 2) -> (n, 3) world."""
+    def to_space(self, places: Reals) -> Reals:
+        """(n, 2) -> (n, 3)."""
         points: Reals = self.origin + places @ self.axes[:2]
         return points
 

@@ -17,7 +17,7 @@ Placed = TypeVar("Placed", Dual, SurfacePolygons)
 
 
 def compact_points(surface: Surface, points: Points, what: str) -> Points:
-    """Vertex numbers of the Blender mesh -> numbers of the surface; places in the world stay."""
+    """Vertex numbers of the Blender mesh -> numbers of the surface; places stay."""
     if points.ndim == 2:
         return points
     vertices = surface.compact(np.asarray(points, np.int32))
@@ -40,7 +40,7 @@ def compact_points(surface: Surface, points: Points, what: str) -> Points:
 
 
 def surface_points(mesh: Any, points: Points) -> Any:
-    """Vertex numbers as they are; places in the world -> the nearest points of the surface."""
+    """Vertex numbers as they are; places -> the nearest points of the surface."""
     return points if points.ndim == 1 else native.load().project(mesh, points)
 
 

@@ -52,13 +52,13 @@ def sweep_over(
     count = min(max(frames, 2), MOST_RINGS)
     rings = _rings(sites, weights, centers, space, last * np.arange(1, count + 1) / count, progress)
     return Sweep(
-        center=frame.to_world(centers[:1])[0],
+        center=frame.to_space(centers[:1])[0],
         axes=frame.axes,
         last_radius=last,
-        edge_vertices=frame.to_world(places),
+        edge_vertices=frame.to_space(places),
         edges=edges,
         edge_radius=radius,
-        rings=frame.to_world(rings.reshape(-1, 2)).reshape(*rings.shape[:3], 3),
+        rings=frame.to_space(rings.reshape(-1, 2)).reshape(*rings.shape[:3], 3),
     )
 
 
