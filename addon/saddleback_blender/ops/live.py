@@ -16,13 +16,13 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import compat, jobs
-from ..bridge.inputs.mesh_in import level_place
+from ..bridge.inputs.mesh_in import level_place, scale_of
 from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_collection import hair
 from ..core.flowing_cells import FlowingCells
 from ..props import TOLD, existing_group
 from ..props.layers import active_layer
-from .live_inputs import inputs_of, is_child, name_of_input
+from .live_inputs import goes_along, inputs_of, is_child, name_of_input
 from .quiet import KINDS, quiet
 
 STEP = 0.02  # seconds between two steps while something is to be done
@@ -46,6 +46,7 @@ class Watched:
         self.cells = FlowingCells()
         self.seen: dict[str, str] = {}  # by kind of run: the content of the request that was made last
         self.inputs: set[tuple[str, str]] = set()  # data-blocks that are read
+        self.scale = b""  # of the object, where it is all that is read of its place
         self.is_changed = False
         self.is_accepted = False  # what was made belongs to what it is made from, whatever that is by now
 
@@ -247,6 +248,7 @@ def _read(context: bpy.types.Context, target: Watched, kind: str) -> tuple[Any, 
     with context.temp_override(object=source, active_object=source):
         call = operator.read(bpy.context)
     target.inputs = inputs_of(source)
+    target.scale = scale_of(source).tobytes() if goes_along(source, target.inputs) else b""
     # As long again belongs to the window.
     live.read_until = 2.0 * time.perf_counter() - began
     return operator, call
@@ -335,13 +337,22 @@ def wake() -> None:
         bpy.app.timers.register(tick, first_interval=0.0, persistent=True)
 
 
+def _is_only_moved(update: bpy.types.DepsgraphUpdate, scales: dict[str, bytes]) -> bool:
+    """Tells whether an object is only moved or turned of which that changes nothing that is made."""
+    item = update.id.original
+    if not isinstance(item, bpy.types.Object) or update.is_updated_geometry or update.is_updated_shading:
+        return False
+    return item.name in scales and scale_of(item).tobytes() == scales[item.name]
+
+
 @persistent  # type: ignore[untyped-decorator]
 def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     """Notes which objects' inputs were changed. After each change in Blender, so that it has to be quick."""
     live.has_news = True
     if live.is_writing or depsgraph.mode == "RENDER" or not (live.watched or jobs.state.live_asked):
         return
-    changed = [update.id.original for update in depsgraph.updates]
+    kept = {watched.name: watched.scale for watched in live.watched.values() if watched.scale}
+    changed = [update.id.original for update in depsgraph.updates if not _is_only_moved(update, kept)]
     names, keys = {name_of_input(block) for block in changed}, {_key(block) for block in changed}
     found = [
         watched

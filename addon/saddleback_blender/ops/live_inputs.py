@@ -33,6 +33,17 @@ def inputs_of(source: bpy.types.Object) -> set[tuple[str, str]]:
     return {name_of_input(block) for block in found if block is not None}
 
 
+def goes_along(source: bpy.types.Object, inputs: set[tuple[str, str]]) -> bool:
+    """Tells whether all that is read goes along with the object where it is moved: no base that stands, no annotation,
+    no other object.
+    """
+    groups = [group for kind in LAYER_KINDS for group in [existing_group(source, kind)] if group is not None]
+    is_bound = any(
+        getattr(group, "make_shell", False) or getattr(group, "strokes", "") == "ANNOTATIONS" for group in groups
+    )
+    return not is_bound and inputs <= {name_of_input(source), name_of_input(source.data)}
+
+
 def is_child(block: bpy.types.ID, name: str) -> bool:
     """Tells whether it is an object that was parented to the one of this name, as an empty to measure from."""
     is_object = isinstance(block, bpy.types.Object) and SOURCE not in block

@@ -213,6 +213,34 @@ def test_what_was_made_goes_with_the_object_and_is_not_made_again(item, monkeypa
     assert began(lambda: setattr(item, "rotation_euler", (0.5, 0.0, 0.0)))
 
 
+def test_an_object_that_is_dragged_is_not_even_read(item, monkeypatch):
+    """A look at a dense mesh in each frame would let the window stutter."""
+
+    def reads(change):
+        seen = []
+        monkeypatch.setattr(live, "_read", lambda *of: (seen.append(1), read(*of))[1])
+        change()
+        steps()
+        return len(seen)
+
+    read = live._read
+    reads(lambda: setattr(item, "scale", (1.0, 2.0, 1.0)))
+    assert not reads(lambda: setattr(item, "location", (1.0, -3.0, 1.5)))
+    assert not reads(lambda: setattr(item, "rotation_euler", (0.3, -0.7, 2.0)))
+    assert reads(lambda: setattr(item, "scale", (1.0, 1.0, 1.0)))
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    item.parent = parent
+    steps()
+    assert not reads(lambda: setattr(parent, "location", (2.0, 0.0, 0.0)))
+    assert reads(lambda: setattr(parent, "scale", (2.0, 1.0, 1.0)))
+    empty = bpy.data.objects.new("Child", None)  # from which distances may be measured
+    bpy.context.scene.collection.objects.link(empty)
+    empty.parent = item
+    steps()
+    assert reads(lambda: setattr(item, "location", (0.0, 0.0, 0.0)))
+
+
 def test_the_last_of_quick_changes_is_what_is_made(item):
     for count in (300, 200, 30):
         item.saddleback.tessellate.count = count
