@@ -127,10 +127,10 @@ class InFaces {
     diagram_.vertex_distance.resize(mesh_.vertex_count());
     std::vector<Index> part_cell(mesh_.face_count(), k_none);
     part_cell.swap(diagram_.face_cell);
-    const GeodesicVoronoi found = diagram_;
-    diagram_.pieces.clear();
-    diagram_.piece_vertices.clear();
-    diagram_.piece_barycentric.clear();
+    GeodesicVoronoi found;
+    found.pieces.swap(diagram_.pieces);
+    found.piece_vertices.swap(diagram_.piece_vertices);
+    found.piece_barycentric.swap(diagram_.piece_barycentric);
     auto piece = found.pieces.begin();
     const auto count = static_cast<Index>(parts_.order().size());
     for (Index i = 0; i < count; ++i) {
@@ -191,7 +191,7 @@ GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job*
   auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
   const ExactParts parts(*field, kept, tolerances(mesh, sites), threads, stage.part(0.3, 0.8));
   const FacesOfParts faces(parts);
-  const ExactCandidates candidates(parts, faces.table(), static_cast<Index>(sites.size()));
+  const ExactCandidates candidates(parts, faces.table(), static_cast<Index>(sites.size()), threads);
   GeodesicVoronoi diagram = subdivision(candidates, sites, threads, stage.part(0.85, 0.95));
   InFaces(parts, diagram).tell();
   diagram.point_distance.resize(diagram.points.size());

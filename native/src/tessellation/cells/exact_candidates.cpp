@@ -461,19 +461,28 @@ void ExactParts::tell_corners(const Look& look) {
   }
 }
 
-ExactCandidates::ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count)
+ExactCandidates::ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count, int threads)
     : FaceCandidates(faces, site_count), parts_(parts) {
-  std::vector<Index> first{0};
-  std::vector<FaceCandidate> all, candidates;
-  for (Index face = 0; face < faces.face_count(); ++face) {
-    const FaceRefinement::Part& part = parts.refinement().parts()[parts.order()[face]];
-    parts.find_candidates(part, candidates);
-    for (FaceCandidate& candidate : candidates) {
-      candidate.face = face;
-      if (!is_beaten(candidate, candidates)) all.push_back(candidate);
+  constexpr Index k_block = 4096;
+  std::vector<std::vector<FaceCandidate>> blocks((faces.face_count() + k_block - 1) / k_block);
+  parallel_for(static_cast<Index>(blocks.size()), threads, 1, [&](Index block, int) {
+    std::vector<FaceCandidate> candidates;
+    for (Index face = k_block * block; face < std::min(faces.face_count(), k_block * (block + 1)); ++face) {
+      parts.find_candidates(parts.refinement().parts()[parts.order()[face]], candidates);
+      for (FaceCandidate& candidate : candidates) {
+        candidate.face = face;
+        if (!is_beaten(candidate, candidates)) blocks[block].push_back(candidate);
+      }
     }
-    first.push_back(static_cast<Index>(all.size()));
+  });
+  std::vector<FaceCandidate> all;
+  std::vector<Index> first(faces.face_count() + 1, 0);
+  for (std::vector<FaceCandidate>& block : blocks) {
+    for (const FaceCandidate& candidate : block) ++first[candidate.face + 1];
+    all.insert(all.end(), block.begin(), block.end());
+    block = {};
   }
+  std::partial_sum(first.begin(), first.end(), first.begin());
   const auto count = [&](Index face) { return first[face + 1] - first[face]; };
   // A face that does not know of a site that its neighbor sees on their edge must be divided there all the same.
   std::vector<std::uint8_t> is_shared(faces.face_count(), 0);

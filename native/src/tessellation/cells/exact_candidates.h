@@ -123,7 +123,7 @@ class ExactParts {
 class ExactCandidates final : public FaceCandidates {
  public:
   /// Both must outlive the candidates.
-  ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count);
+  ExactCandidates(const ExactParts& parts, const FaceTable& faces, Index site_count, int threads);
   Index label(Index vertex) const override { return parts_.nearest(vertex).source; }
   double distance(Index vertex) const override { return parts_.nearest(vertex).distance; }
 
