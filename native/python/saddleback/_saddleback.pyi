@@ -3950,7 +3950,7 @@ def direction_field(
     Raises:
         InputError: a vertex out of range or on the boundary; an index that the symmetry lacks; indices of a component of
             another sum, telling what is missing; a stroke of another mesh; hard strokes that disagree in a face; curvature
-            for symmetry 1; directions of another number, not finite, or of a face and at right angles to it; weights of
+            for symmetry 1; directions of another number, not finite, or at right angles to the surface; weights of
             another number, below 0, or without directions.
         Cancelled: the job was.
 

@@ -179,6 +179,17 @@ def test_bad_directions_are_told() -> None:
                 sb.direction_field(mesh, symmetry, singularities, directions=arguments[0], weights=arguments[1])
 
 
+@pytest.mark.parametrize("arrays", [meshes.grid(6, 6), meshes.icosphere(2)], ids=["flat", "curved"])
+def test_directions_of_vertices_that_leave_the_surface_are_told(arrays: meshes.Arrays) -> None:
+    """On a curved surface they have parts within the faces about them, which point to all sides."""
+    mesh = sb.Mesh(*arrays)
+    directions = np.zeros_like(mesh.vertices)
+    directions[7] = 3 * sb.vertex_normals(*arrays)[7]
+    for singularities in (None, {}):
+        with pytest.raises(sb.InputError, match="directions: the one of vertex 7 has no direction along the surface"):
+            sb.direction_field(mesh, 2, singularities, directions=directions)
+
+
 def test_triangles_with_right_and_obtuse_angles_take_no_longer() -> None:
     """Over the longest edges of such triangles directions hardly turn: to the solver pairs of them are one."""
     vertices, triangles = meshes.grid(200, 200)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "saddleback/error.h"
+#include "saddleback/mesh/triangle_arrays.h"
 
 #include "support/hypotenuse.h"
 
@@ -93,6 +94,14 @@ std::vector<Complex> powers_of_directions(const Mesh& mesh, int symmetry, const 
   const auto stiffness = [&](std::size_t i) {
     return k_drawn_stiffness * (given.weights.empty() ? 1 : given.weights[i]);
   };
+  if (!is_of_faces) {
+    const std::vector<Vec3> normals = vertex_normals(mesh.positions(), mesh.triangles());
+    for (std::size_t v = 0; v < count; ++v) {
+      const Vec3 unit = given.vectors[v].stableNormalized();
+      if (!given.vectors[v].isZero(0) && !(unit.cross(normals[v]).norm() > k_least_part))
+        throw InputError(message("directions: the one of vertex ", v, " has no direction along the surface"));
+    }
+  }
   for (Index f = 0; f < mesh.face_count(); ++f) {
     if (is_of_faces) {
       if (given.vectors[f].isZero(0)) continue;
