@@ -268,3 +268,12 @@ def test_a_run_ends_when_it_is_asked_to():
         progress.cancel()
         thread.join(10.0)
         assert ended and ended[0] - asked < 0.25
+
+
+@pytest.mark.parametrize(("height", "width", "reach"), [(0.5, 0.2, 1.0), (0.05, 0.2, 0.5), (0.5, 1.4, 0.5 / 0.7)])
+def test_how_far_the_surface_reaches_is_told(height, width, reach):
+    """Where a border ends it, coverage does not say so."""
+    line = Polyline(np.array([[0.1, height, 0.0], [0.9, height, 0.0]]), False)
+    result = lay(curves=(line,), width=width)
+    assert result.coverage == pytest.approx(1.0, rel=1e-6)
+    assert result.reach == pytest.approx(reach, rel=1e-6)

@@ -39,6 +39,7 @@ class RibbonResult:
     lengths: Reals  # (m,) of the ribbons
     repeats: Indices  # (m,) how often what they show is there
     coverage: float  # share of the bands that is there
+    reach: float  # of half the width: how far the surface reaches, on the side of a curve where that is least
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,11 @@ class _Strip:
     length: float
     area: float
     coverage: float
+
+    @property
+    def reach(self) -> float:
+        """How far from the curve the surface reaches, on the side where that is less."""
+        return float(min(self.uv[:, 1].max(), -self.uv[:, 1].min()))
 
     @property
     def nbytes(self) -> int:
@@ -97,6 +103,7 @@ def ribbons(request: RibbonRequest, progress: Progress, cache: Cache | None = No
         lengths=np.array([strip.length for strip in strips]),
         repeats=np.array(repeats, np.int32),
         coverage=sum(strip.area for strip in strips) / wanted,
+        reach=min(strip.reach for strip in strips) / radius,
     )
 
 

@@ -25,7 +25,7 @@ from ..props import keep_settings, settings_of
 from ..props.ribbon import RIBBON
 from .base import SurfaceOperator
 
-WELL_COVERED = 0.97  # of a band; what is less is told
+WELL_COVERED = 0.97  # of a band, and of half its width; what is less is told
 
 
 class RibbonOperator(SurfaceOperator):
@@ -77,6 +77,8 @@ def _told(result: RibbonResult) -> str:
         told = f"{len(lengths)} ribbons of lengths {lengths.min():.4g} to {lengths.max():.4g}"
     if result.coverage < WELL_COVERED:
         told += f", {100 * result.coverage:.0f} % of the band is on it: where curves bend more, there is no room"
+    if result.reach < WELL_COVERED:
+        told += f", wider than the surface: of half the width, {100 * result.reach:.0f} % is on it on one side"
     return told
 
 
