@@ -167,3 +167,13 @@ def test_bad_input_is_told() -> None:
         sb.bezier_curve(graph, [0, 5], halvings=11)
     with pytest.raises(sb.InputError, match="graph: wanted a SaddleVertexGraph"):
         sb.bezier_curve(mesh, [0, 5])
+
+
+def test_a_curve_of_few_pieces_may_pass_over_thousands_of_vertices():
+    """Around a corner of a large flat grid: steps were counted by pieces, and ended half-way."""
+    side = 120
+    mesh = sb.Mesh(*meshes.grid(side, side, jitter=0.3))
+    index = np.arange(side * side, dtype=np.int32).reshape(side, side)
+    walk = np.concatenate([index[1, 1:-1], index[2:-1, -2]])
+    tight = sb.shorten_curve(sb.SurfaceCurve(mesh, walk))
+    assert tight.length == pytest.approx(np.linalg.norm(mesh.vertices[walk[-1]] - mesh.vertices[walk[0]]), rel=1e-12)

@@ -61,8 +61,9 @@ class PathShortener {
   void lay_out_turns(const LegEnd& begin, const LegEnd& end);
   void replace(LegChain& chain, std::size_t i);
   bool split_at_cone(LegChain& chain);
-  // Every step shortens the path; a cap for the case that rounding thinks so for ever.
-  static constexpr std::size_t k_steps_per_leg = 200;
+  // Every step shortens the path; a cap for the case that rounding thinks so for ever. A path of few legs may pass over
+  // most vertices of the surface, each more than once where it winds.
+  static constexpr std::size_t k_steps_per_vertex = 200;
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
@@ -73,7 +74,7 @@ class PathShortener {
 
 template <class Check>
 void PathShortener::shorten(LegChain& chain, Check&& check) {
-  std::size_t steps = k_steps_per_leg * (chain.leg_count + 1);
+  std::size_t steps = k_steps_per_vertex * (chain.leg_count + static_cast<std::size_t>(mesh_.vertex_count()));
   do {
     for (std::size_t i = 1; i < chain.leg_count && steps > 0;) {
       check();
