@@ -358,6 +358,28 @@ def test_near_sites_on_a_rough_surface(gap: float) -> None:
     assert len(cells.edge_points) < 3 * len(alone.edge_points)
 
 
+@pytest.mark.parametrize(
+    ("arrays", "vertices"),
+    [
+        (meshes.icosphere(1), [17, 24, 31, 18, 11, 29, 36, 3, 37, 33]),
+        (meshes.icosphere(1), [21, 22, 33, 14, 30, 24, 41, 10, 9, 1, 18, 36, 3]),
+        (meshes.icosphere(1), [23, 32, 28, 31, 20, 16, 18, 38, 8, 11]),
+        (meshes.torus(12, 6), [34, 0, 46, 7, 68, 65, 1, 58, 30, 15, 18, 33, 32, 64, 26, 21, 14, 17, 61]),
+    ],
+)
+def test_sites_that_tie_along_whole_edges(arrays: meshes.Arrays, vertices: list[int]) -> None:
+    """On regular meshes: a rounding in what a face beside an edge knew gave up to a quarter of a cell's width away."""
+    mesh = sb.Mesh(*arrays)
+    split = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), vertices, exact=True).split()
+    corners = split.vertices[split.triangles]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    is_wide = areas > 1e-7 * mesh.area  # beside the edges themselves
+    points = sb.project(mesh, corners[is_wide].mean(axis=1))
+    distances = np.array([sb.ExactField(mesh, [vertex]).distance_to(points) for vertex in vertices])
+    own = distances[split.triangle_cell[is_wide], np.arange(len(points))]
+    assert (own - distances.min(axis=0)).max() < 1e-5 * np.sqrt(mesh.area / len(vertices))
+
+
 def test_progress_rises_and_cancel_is_quick() -> None:
     mesh = sb.Mesh(*meshes.torus(90, 40))
     graph, sites = sb.SaddleVertexGraph(mesh, k=3), random_points(mesh, 20, seed=1)

@@ -22,6 +22,9 @@ constexpr double k_finer = 4;
 // Of the tolerance, where no way bends: bisectors are straight there, so that it costs few parts.
 constexpr double k_unbent = 0.1;
 
+// Of a distance: by so much it may be told longer than the way over another corner that is as long.
+constexpr double k_rounding = 1e-12;
+
 // Of the tolerance: a way that is the shortest is as long as the distance, but for rounding.
 constexpr double k_explained = 1e-3;
 
@@ -274,7 +277,9 @@ void ExactParts::find_candidates(const FaceRefinement::Part& part, const Corners
     bool may_own = true, is_nearest = false;  // the latter whatever rounding says of the former
     for (int i = 0; i < 3; ++i) {
       const double to_next = length[i], to_last = length[(i + 2) % 3];
-      least[i] = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
+      // What is known stays to the bit, so that the faces beside an edge tell the same of it.
+      const double by_others = std::min(distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last);
+      least[i] = by_others < (1 - k_rounding) * distance[i] ? by_others : distance[i];
       may_own = may_own && least[i] - first[i].distance <= 2 * std::max(to_next, to_last);
       is_nearest = is_nearest || first[i].source == source;
     }
