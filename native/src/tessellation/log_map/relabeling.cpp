@@ -20,8 +20,12 @@ void Relabeling::loosen(std::span<const Index> nodes) {
 }
 
 void Relabeling::offer(Index node, Index source, double distance) {
-  if (distance > distances_[node] || (distance == distances_[node] && source >= sources_[node])) return;
-  heap_.push_back({distance, source, node});
+  const Offer offered{distance, source, node};
+  if (!serves(offered, distances_[node], sources_[node])) return;
+  Offer& best = best_[node];
+  if (!serves(offered, best.distance, best.source)) return;
+  best = offered;
+  heap_.push_back(offered);
   std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -31,8 +35,7 @@ bool Relabeling::next(Offer& offer) {
     std::pop_heap(heap_.begin(), heap_.end());
     offer = heap_.back();
     heap_.pop_back();
-    const double distance = distances_[offer.node];
-    if (offer.distance < distance || (offer.distance == distance && offer.source < sources_[offer.node])) return true;
+    if (serves(offer, distances_[offer.node], sources_[offer.node])) return true;
   }
   return false;
 }

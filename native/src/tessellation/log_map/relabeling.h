@@ -1,6 +1,7 @@
 #pragma once
 // The nearest sources of a graph's nodes after some of the sources have moved.
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,7 @@ class Relabeling {
  public:
   /// `distances` and `sources`, by node, are written to. All must outlive it.
   Relabeling(const SaddleVertexGraph& graph, std::vector<double>& distances, std::vector<Index>& sources)
-      : graph_(graph), distances_(distances), sources_(sources) {}
+      : graph_(graph), distances_(distances), sources_(sources), best_(distances.size()) {}
 
   /// Nodes that belong to no source until they are reached anew.
   void loosen(std::span<const Index> nodes);
@@ -33,18 +34,22 @@ class Relabeling {
 
  private:
   struct Offer {
-    double distance;
-    Index source, node;
+    double distance = std::numeric_limits<double>::infinity();
+    Index source = k_none, node = k_none;
     /// The nearest on top of a heap; among equals the smallest source.
     bool operator<(const Offer& other) const {
       return distance != other.distance ? distance > other.distance : source > other.source;
     }
   };
+  static bool serves(const Offer& offer, double distance, Index source) {
+    return offer.distance < distance || (offer.distance == distance && offer.source < source);
+  }
   bool next(Offer& offer);
 
   const SaddleVertexGraph& graph_;
   std::vector<double>& distances_;
   std::vector<Index>& sources_;
+  std::vector<Offer> best_;  ///< by node: a node has a hundred neighbors, of whose offers few are waited for
   std::vector<Offer> heap_;
 };
 
