@@ -16,7 +16,7 @@ from ..bridge.outputs.out_collection import marks_of, outputs_of, was_applied, w
 from ..bridge.tokens import OWN_MARKS, token_of
 from ..nodes import FOLLOW, modifier_of, remove_modifier
 
-_last: dict[str, bytes] = {}  # by the names of sources
+_last: dict[str, bytes] = {}  # by the names of sources and outputs
 
 
 @persistent  # type: ignore[untyped-decorator]

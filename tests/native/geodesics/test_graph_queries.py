@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.exact import random_points
 from tests.truth.families import delaunay, square, two_lines
 from tests.truth.graph import shortness
@@ -515,36 +516,21 @@ def test_more_fields_than_memory_are_refused() -> None:
 @pytest.mark.parametrize("what", ["fields", "points", "curves", "landmarks"])
 def test_progress_rises_and_cancel_is_quick(what: str) -> None:
     mesh = sb.Mesh(*meshes.icosphere(6))
-    graph = sb.SaddleVertexGraph(mesh, k=20)
-    points = random_points(mesh, 20_000)
+    graph, points = sb.SaddleVertexGraph(mesh, k=20), random_points(mesh, 20_000)
+    graphs = [graph]
+
+    def find_landmarks(job: sb.Job) -> float:
+        graphs.append(sb.SaddleVertexGraph(mesh, k=20))  # which finds them once
+        return graphs[-1].distance(0, 1, job=job)
+
     asks = {
         "fields": lambda job: graph.fields(np.arange(600), threads=1, job=job),
         "points": lambda job: graph.distances_to(points, points, job=job),
         "curves": lambda job: graph.distances([traced(mesh, 100 * i, 0.1, 3.0) for i in range(600)], job=job),
-        "landmarks": lambda job: graph.distance(0, 1, job=job),
+        "landmarks": find_landmarks,
     }
-    ended: list[float] = []
-    job, seen = sb.Job(), []
-
-    def work() -> None:
-        try:
-            asks[what](job)
-        except sb.Cancelled:
-            ended.append(time.perf_counter())
-
-    worker = threading.Thread(target=work)
-    worker.start()
-    while job.fraction < 0.2 and worker.is_alive():
-        seen.append(job.fraction)
-        time.sleep(0.001)
-    asked = time.perf_counter()
-    job.cancel()
-    worker.join()
-    assert seen == sorted(seen)
-    if what != "landmarks":  # which may be done before they are told to stop
-        assert ended
-        assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
-    assert np.isfinite(graph.distance(0, 1))  # what was stopped leaves nothing behind
+    check_progress_and_cancel(asks[what], 0.2)
+    assert np.isfinite(graphs[-1].distance(0, 1))  # what was stopped leaves nothing behind
 
 
 def test_a_query_after_stopped_ones_is_as_if_they_had_not_been() -> None:
