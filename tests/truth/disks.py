@@ -204,13 +204,13 @@ def inset_disks(sites: Floats, rng: Random) -> None:
     ]  # fmt: skip
     distances = np.linalg.norm(places[:, None] - sites, axis=2) - weights
     owners = distances.argmin(axis=1)
-    for owner in np.unique(owners):
+    for owner in np.setdiff1d(owners, diagram.hidden):  # a hidden site is nearest by rounding only
         mine = places[owners == owner]
         keeps, comes_near = np.ones(len(mine), bool), np.zeros(len(mine), bool)
         for other in range(len(sites)):
             lead = float(weights[owner] - weights[other])
             apart = float(np.hypot(*(sites[other] - sites[owner])))
-            if apart == 0 or other in diagram.hidden or owner in diagram.hidden:
+            if apart == 0 or other in diagram.hidden:
                 continue  # equal sites share a cell
             if apart - abs(lead) < 1e-6 * apart:
                 return  # a cell so thin that a circle by numbers misses it
