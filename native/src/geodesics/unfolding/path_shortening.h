@@ -27,7 +27,7 @@ Index cone_met(const Mesh& mesh, Index entered, double crossing);
 /// Moves a chain to the other side of vertices that it passes with less than pi on one side, until there are none: each
 /// time the faces about the vertex on that side join the faces before and after it to one strip, whose shortest path
 /// replaces the two pieces (as the edge flips of [sharp2020], but without a mesh to flip). Never longer; ends because
-/// every step is shorter. Never leaves the homotopy class.
+/// every step is shorter, or as long with a vertex fewer. Never leaves the homotopy class.
 class PathShortener {
  public:
   explicit PathShortener(const Unfolding& unfolding)
@@ -61,8 +61,8 @@ class PathShortener {
   void lay_out_turns(const LegEnd& begin, const LegEnd& end);
   void replace(LegChain& chain, std::size_t i);
   bool split_at_cone(LegChain& chain);
-  // Every step shortens the path; a cap for the case that rounding thinks so for ever. A path of few legs may pass over
-  // most vertices of the surface, each more than once where it winds.
+  // Every step shortens the path or drops a vertex; a cap for the case that rounding thinks so for ever. A path of few
+  // legs may pass over most vertices of the surface, each more than once where it winds.
   static constexpr std::size_t k_steps_per_vertex = 200;
 
   const Unfolding& unfolding_;
