@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
-from tests.truth.families import delaunay, square
 
 Floats = NDArray[np.float64]
 
@@ -153,23 +152,6 @@ def test_shortened_paths_on_the_plane_are_straight_lines(k: int) -> None:
         paths = graph.paths([17], np.arange(mesh.vertex_count, dtype=np.int32), shorten=True)
         direct = np.linalg.norm(mesh.vertices - mesh.vertices[17], axis=1)
         assert np.allclose(paths.lengths, direct, rtol=1e-12, atol=1e-15)
-
-
-def test_shortened_paths_pass_vertices_that_are_beside_a_straight_line() -> None:
-    """Between two lines of vertices 2e-8 apart, where a path by a vertex is as long but for rounding."""
-    for seed in (3, 4, 5):
-        rng = np.random.default_rng(seed)
-        heights, gap = np.sort(rng.random((2, 11)), axis=1), 2e-8
-        left = rng.uniform(0.3, 0.7)
-        lines = [np.column_stack([np.full(11, left + i * gap), heights[i]]) for i in range(2)]
-        mesh = sb.Mesh(*delaunay(square(np.vstack(lines))))
-        graph = sb.SaddleVertexGraph(mesh, threads=1)
-        begin = np.array([left, heights[0, 0], 0])
-        for share in (0.3, 0.5, 0.7, 0.9):
-            end = np.array([left + 0.6 * gap, begin[1] + share * (1 - begin[1]), 0])
-            path = graph.path(*(sb.project(mesh, [place]) for place in (begin, end)), shorten=True)
-            x, y, _ = (path.points - begin).T
-            assert np.abs((end - begin)[0] * y - (end - begin)[1] * x).max() < 1e-12
 
 
 def test_shortened_paths_bend_round_holes_only() -> None:

@@ -48,21 +48,20 @@ void PathShortener::lay_along(const LegEnd& begin, const LegEnd& end, std::span<
   std::swap(chain, found_);
 }
 
-/// Goes to the other side of vertex i. \return false where that is no shorter.
-bool PathShortener::step(LegChain& chain, std::size_t i) {
-  const Side side = bent_side(joint(chain, i));
+bool PathShortener::step(LegChain& chain, std::size_t i, double bend) {
+  const Side side = bent_side(joint(chain, i), bend);
   if (side == Side::none || !join(joint(chain, i), side)) return false;
   replace(chain, i);
   return true;
 }
 
-/// The side of the vertex on which the path has less than pi and the surface goes on all the way; of two the smaller
-/// one.
-PathShortener::Side PathShortener::bent_side(const Joint& joint) const {
+/// The side of the vertex on which the path has less than pi, by more than the bend, and the surface goes on all the
+/// way; of two the smaller one.
+PathShortener::Side PathShortener::bent_side(const Joint& joint, double bend) const {
   const Index vertex = joint.at.vertex;
   const double back = joint.in.end_angle, ahead = joint.out.start_angle;
   const double total = mesh_.total_angle(vertex);
-  const double limit = std::numbers::pi - k_straight;
+  const double limit = std::numbers::pi - bend;
   if (mesh_.is_boundary(vertex)) {
     if (std::abs(back - ahead) >= limit) return Side::none;
     return back >= ahead ? Side::left : Side::right;
@@ -81,9 +80,8 @@ bool PathShortener::join(const Joint& joint, Side side) {
   for (const Index h : joint.out.entered) append(h);
   trim(joint.before, joint.after);
   lay_out_turns(joint.before, joint.after);
-  const double before = joint.in.length + joint.out.length, after = found_.length();
-  // By a vertex beside a straight line a path may be as long but for rounding: past it there is one vertex fewer.
-  return after < before * (1 - 1e-15) || (found_.leg_count == 1 && after <= before);
+  const double before = joint.in.length + joint.out.length;
+  return found_.length() < before * (1 - 1e-15);
 }
 
 /// Crossing a half-edge and coming straight back is crossing nothing.
