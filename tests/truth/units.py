@@ -253,6 +253,8 @@ def shapes_of(
     cut, report = laid.cut(), sb.check_distribution(there, laid, samples=200, threads=1)
     about, bent = laid.attributes(0.1 * u, threads=1), laid.bend([SOLID] * len(shapes), threads=1)
     copies = sb.distribute(there, shapes[:2], [3, 2], size=0.1 * u, gap=0.01 * u, seed=seed, mode=mode)
+    density = 1.0 + np.arange(len(mesh.vertices)) % 7
+    painted = sb.distribute(there, shapes[:2], [3, 2], size=0.3 * u, density=density, seed=seed, mode=mode).placements
     proof = sb.distribute(there, shapes[0], size=0.3 * u, seed=seed, maximal=True, tolerance=0.1).certificate
     return [
         (len(laid.failures), 0), (laid.stretch, 0),
@@ -260,6 +262,7 @@ def shapes_of(
         (report.coverage, 0), (about.placement, 0), (about.distance, 1), (about.uv, 0), (bent.vertices, 1),
         (bent.deviations, 0), (laid.frames()[0], 1), (laid.frames()[1], 0), (copies.placements.shape, 0),
         (copies.placements.angle, 0), (copies.placements.scale, 1), *points_of(there, copies.placements.center),
+        (painted.shape, 0), (painted.angle, 0), (painted.scale, 1), *points_of(there, painted.center),
         (proof.tolerance, 1), (proof.uncertified_area, 2), (proof.cells, 0),
     ]  # fmt: skip
 

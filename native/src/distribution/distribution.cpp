@@ -238,7 +238,7 @@ class DensityFollower {
     const std::vector<double>& masses = densities_.masses();
     const auto room = [&](std::size_t i, double count) {
       const double density = densities_.of_list(i, place.face, place.barycentric);
-      return masses[i] / count / std::max(density, 1e-9 * masses[i]);
+      return masses[i] / count / std::max(density, 1e-9 * masses[i] / mesh_.area());
     };
     if (masses.size() == 1) return room(0, static_cast<double>(turns_.size()));
     double copies = 0;
