@@ -6,8 +6,9 @@ shifted (and turned) as seen from there: along the triangle's first side, along 
 both. The group looks up where those vertices are now, after all modifiers. A mesh that has another number of vertices
 by then, say of another subdivision level in the render than in the viewport, is asked by places instead: where is now
 what was there at rest? Blender keeps the places at rest as an attribute of the mesh. Where it does not, the points stay
-where they were put. Points of meshes carry what they know as attributes; curve objects cannot, so that for them a
-hidden mesh keeps it, in order.
+where they were put. A mesh that repeats faces by then, as a mirror makes it, has several answers: there the vertices
+are looked up after all, where they are the same at rest. Points of meshes carry what they know as attributes; curve
+objects cannot, so that for them a hidden mesh keeps it, in order.
 """
 
 from __future__ import annotations
@@ -51,6 +52,9 @@ KEY = "saddleback_key"  # on the groups: all that they were made from
 # How points find their place on a mesh of another number of vertices: by where they stand at rest; by the numbers of
 # its vertices, of which the first are those that were read; not at all.
 BY_PLACE, BY_NUMBER, NOT_AT_ALL = "place", "number", "nothing"
+# Of the area at rest: what is more than that repeats faces; a face that is less has no inside to be found on.
+REPEATED, NO_AREA = 1.5, 1e-12
+SAME_REST = 1e-4  # of the root of the area at rest: places that are nearer to each other are the same
 
 Read = Callable[[str, str], Any]  # of an attribute's name and type: the socket that gives it
 
@@ -63,6 +67,7 @@ class Host:
     axes: tuple[tuple[float, ...], ...]  # three: where its unit vectors lead
     vertex_count: int
     otherwise: str  # BY_PLACE, BY_NUMBER, NOT_AT_ALL
+    area: float  # of its faces at rest, as the item's own space has it
 
     @property
     def normal_axes(self) -> tuple[tuple[float, ...], ...]:
@@ -70,13 +75,13 @@ class Host:
         return tuple(map(tuple, np.linalg.inv(np.array(self.axes)).T.tolist()))
 
     @classmethod
-    def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int, otherwise: str) -> Host:
+    def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int, otherwise: str, area: float) -> Host:
         """Returns it as seen from an object whose world matrix is `place`."""
         own, world = (np.array(matrix, np.float64)[:3, :3] for matrix in (place, item.matrix_world))
         seen = np.linalg.inv(own) @ world
         # Rounding goes, so that runs of objects of the same scale share a group.
         axes = np.round(seen, 6 - math.ceil(math.log10(np.abs(seen).max())))
-        return cls(item, tuple(map(tuple, axes.T.tolist())), vertex_count, otherwise)
+        return cls(item, tuple(map(tuple, axes.T.tolist())), vertex_count, otherwise, float(f"{area:.3g}"))
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,7 @@ class Known:
 
 def set_following(item: bpy.types.Object, host: Host, known: Known) -> bpy.types.Modifier:
     """Takes the points of a mesh, or of a curve object, along with the host."""
-    key = repr((host.axes, host.vertex_count, host.otherwise))
+    key = repr((host.axes, host.vertex_count, host.otherwise, host.area))
     key += repr((known.is_shifted, known.is_turned, known.keeper is not None))
     group = next((group for group in bpy.data.node_groups if group.get(KEY) == key and group.library is None), None)
     if group is None:
@@ -174,15 +179,22 @@ def _triangle_now(wiring: Wiring, source: Any, host: Host, known: Known, read: R
         normals = [wiring.sampled(mesh, "FLOAT_VECTOR", upward, read(name, "INT")) for name in CORNER_ATTRIBUTES]
         normal = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), normals)
     if host.otherwise == BY_PLACE:
-        rest = _RestMesh(wiring, mesh, {NOW_POSITION: seen, NOW_NORMAL: upward} if has_axes else {NOW_POSITION: seen})
+        values = {NOW_POSITION: seen, NOW_NORMAL: upward} if has_axes else {NOW_POSITION: seen}
+        rest = _RestMesh(wiring, mesh, values, host.area)
         place = read(REST_ATTRIBUTES[0], "FLOAT_VECTOR")
-        foot = wiring.chosen(is_same, rest.now(NOW_POSITION, place), foot)
+        by_number = wiring.boolean("OR", is_same, rest.is_repeated)
+        foot = wiring.chosen(by_number, rest.now(NOW_POSITION, place), foot)
         if has_axes:
             step = read(REST_ATTRIBUTES[1], "FLOAT_VECTOR")
             back, ahead = (rest.now(NOW_POSITION, wiring.vector(sign, place, step)) for sign in ("SUBTRACT", "ADD"))
-            side = wiring.chosen(is_same, wiring.vector("SUBTRACT", ahead, back), side)
-            normal = wiring.chosen(is_same, rest.now(NOW_NORMAL, place), normal)
-        is_known = wiring.boolean("OR", is_same, rest.is_there)
+            side = wiring.chosen(by_number, wiring.vector("SUBTRACT", ahead, back), side)
+            normal = wiring.chosen(by_number, rest.now(NOW_NORMAL, place), normal)
+        resting = wiring.attribute(REST_POSITION, "FLOAT_VECTOR")
+        corners = [wiring.sampled(mesh, "FLOAT_VECTOR", resting, read(name, "INT")) for name in CORNER_ATTRIBUTES]
+        stands = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), corners)
+        is_elsewhere = wiring.is_greater(wiring.distance(stands, place), SAME_REST * math.sqrt(host.area))
+        is_lost = wiring.boolean("AND", rest.is_repeated, is_elsewhere)
+        is_known = wiring.boolean("OR", is_same, wiring.boolean("NIMPLY", rest.is_there, is_lost))
     elif host.otherwise == BY_NUMBER:
         is_known = wiring.compared(count, "GREATER_EQUAL", host.vertex_count)
     if is_whole is not None:
@@ -197,20 +209,27 @@ def _triangle_now(wiring: Wiring, source: Any, host: Host, known: Known, read: R
 class _RestMesh:
     """The mesh with its vertices where they are at rest, and for each of those places what is there now."""
 
-    def __init__(self, wiring: Wiring, mesh: Any, values: dict[str, Any]) -> None:
+    def __init__(self, wiring: Wiring, mesh: Any, values: dict[str, Any], area: float) -> None:
         self._wiring = wiring
-        places = wiring.attribute(REST_POSITION, "FLOAT_VECTOR")
-        extent = wiring.node("GeometryNodeAttributeStatistic")
-        extent.data_type = "FLOAT_VECTOR"
-        wiring.link(mesh, extent.inputs["Geometry"])
-        wiring.link(places, wiring.enabled(extent.inputs, "Attribute"))
-        self.is_there = wiring.is_long(wiring.enabled(extent.outputs, "Range"))  # what is not there reads as zeros
-        laid = wiring.node("GeometryNodeSetPosition")
+        laid, cut, sizes = map(
+            wiring.node,
+            ("GeometryNodeSetPosition", "GeometryNodeDeleteGeometry", "GeometryNodeAttributeStatistic"),
+        )
         for name, value in values.items():
             mesh = wiring.stored(mesh, name, value)
         wiring.link(mesh, laid.inputs["Geometry"])
-        wiring.link(places, laid.inputs["Position"])
-        self._mesh = laid.outputs["Geometry"]
+        wiring.link(wiring.attribute(REST_POSITION, "FLOAT_VECTOR"), laid.inputs["Position"])
+        # What a modifier spans between copies of one vertex, or where no place at rest is kept, has no area there.
+        cut.domain = sizes.domain = "FACE"
+        size = wiring.node("GeometryNodeInputMeshFaceArea").outputs["Area"]
+        has_none = wiring.boolean("NOT", wiring.is_greater(size, NO_AREA * area))
+        wiring.link(laid.outputs["Geometry"], cut.inputs["Geometry"])
+        wiring.link(has_none, cut.inputs["Selection"])
+        self._mesh = cut.outputs["Geometry"]
+        wiring.link(self._mesh, sizes.inputs["Geometry"])
+        wiring.link(size, wiring.enabled(sizes.inputs, "Attribute"))
+        total = wiring.enabled(sizes.outputs, "Sum")
+        self.is_there, self.is_repeated = (wiring.is_greater(total, share * area) for share in (0.0, REPEATED))
 
     def now(self, name: str, place: Any) -> Any:
         """Returns one of the values at the place of the surface that is next to one at rest."""

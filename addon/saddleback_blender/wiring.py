@@ -80,19 +80,17 @@ class Wiring:
         self._give(self.enabled(made.inputs, "B"), to)
         return made.outputs["Result"]
 
-    def is_long(self, vector: Any) -> Any:
-        """Tells whether a vector is longer than zero."""
-        length, made = self.node("ShaderNodeVectorMath"), self.node("FunctionNodeCompare")
-        length.operation = "LENGTH"
-        self.link(vector, length.inputs[0])
+    def is_greater(self, number: Any, than: float) -> Any:
+        """Compares a number with another one."""
+        made = self.node("FunctionNodeCompare")
         made.data_type, made.operation = "FLOAT", "GREATER_THAN"
-        self.link(length.outputs["Value"], self.enabled(made.inputs, "A"))
-        self.enabled(made.inputs, "B").default_value = 0.0
+        self.link(number, self.enabled(made.inputs, "A"))
+        self.enabled(made.inputs, "B").default_value = than
         return made.outputs["Result"]
 
-    def boolean(self, operation: str, one: Any, other: Any) -> Any:
-        """Tells whether both, or one, of two are true."""
-        return self._operation("FunctionNodeBooleanMath", operation, (one, other), "Boolean")
+    def boolean(self, operation: str, *operands: Any) -> Any:
+        """Logic with one or two sockets."""
+        return self._operation("FunctionNodeBooleanMath", operation, operands, "Boolean")
 
     def math(self, operation: str, *operands: Any) -> Any:
         """Mathematics with sockets or constants."""
@@ -101,6 +99,10 @@ class Wiring:
     def vector(self, operation: str, *operands: Any) -> Any:
         """Vector mathematics with sockets or constants."""
         return self._operation("ShaderNodeVectorMath", operation, operands, "Vector")
+
+    def distance(self, one: Any, other: Any) -> Any:
+        """How far two places are from each other."""
+        return self._operation("ShaderNodeVectorMath", "DISTANCE", (one, other), "Value")
 
     def _operation(self, kind: str, operation: str, operands: tuple[Any, ...], output: str) -> Any:
         made = self.node(kind)

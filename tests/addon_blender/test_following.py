@@ -408,23 +408,44 @@ def points_of_any(item):
     return places
 
 
-@pytest.mark.parametrize("kind", ["MIRROR", "SOLIDIFY", "ARRAY"])
-def test_what_modifiers_repeat_does_not_lead_astray(kind):
-    item = arm()
+def repeated(item, kind):
     modifier = item.modifiers.new("Again", kind)
     if kind == "MIRROR":
         modifier.use_axis, modifier.use_mirror_merge = (True, False, False), False
+    bpy.context.view_layer.update()
+
+
+@pytest.mark.parametrize("is_later", [False, True])
+@pytest.mark.parametrize("kind", ["MIRROR", "SOLIDIFY", "ARRAY"])
+def test_what_modifiers_repeat_does_not_lead_astray(kind, is_later):
+    item = arm()
+    if kind == "MIRROR":
         for vertex in item.data.vertices:
             vertex.co.x += 2.0
-    bpy.context.view_layer.update()
+    if not is_later:
+        repeated(item, kind)
     everything(item, False)
     outputs = bare(item)
     before = {output: points_of_any(output) for output in outputs}
+    if is_later:
+        repeated(item, kind)
     key = rising(item, lambda place: place + Vector((0, 0, 3)))
     key.value = 1.0
     bpy.context.view_layer.update()
     for output in outputs:
         np.testing.assert_allclose(points_of_any(output), before[output] + (0, 0, 3), atol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["WIREFRAME", "SCREW"])
+def test_faces_between_copies_of_a_vertex_are_no_place_to_stand_on(kind):
+    """At rest they have no area, and what was on one flew up to 100,000 units away."""
+    item = arm()
+    everything(item, False)
+    before = {output: points_of_any(output) for output in bare(item)}
+    item.modifiers.new("Bars", kind)
+    bpy.context.view_layer.update()
+    for output, places in before.items():
+        np.testing.assert_allclose(points_of_any(output), places, atol=1e-5)
 
 
 def test_where_following_ends_is_told(capfd):

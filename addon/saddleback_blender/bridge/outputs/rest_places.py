@@ -15,7 +15,7 @@ from ... import compat, rollback
 from ...core.results import Indices, Reals
 from ...core.surfaces.local_frames import rest_anchors
 from ...follow_nodes import BY_NUMBER, BY_PLACE, NOT_AT_ALL, REST_ATTRIBUTES, REST_POSITION
-from ..inputs.mesh_in import mesh_of
+from ..inputs.mesh_in import mesh_of, read_triangles
 from .out_attributes import set_attribute
 
 KEPT = "saddleback_rest"  # on a source: Blender keeps its places at rest because we asked
@@ -30,6 +30,7 @@ class Rest:
 
     places: Reals | None  # None where they are not known
     otherwise: str  # how to find a point on a mesh of another number of vertices
+    area: float = 0.0  # of the mesh's faces there
 
 
 def read_rest(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool, vertex_count: int) -> Rest:
@@ -44,18 +45,26 @@ def read_rest(context: bpy.types.Context, source: bpy.types.Object, use_modifier
         source[KEPT] = True
     own = compat.read_positions(source.data)
     if not any(modifier.show_viewport for modifier in source.modifiers):
-        return Rest(own.astype(np.float64), BY_PLACE)
+        return Rest(own.astype(np.float64), BY_PLACE, _area(source.data, own))
     with mesh_of(context, source, True, has_layers=False) as mesh:
         now = _rest_of(mesh)
         if now is None:
             return Rest(None, NOT_AT_ALL)
         starts_with_own = len(now) >= len(own) and np.array_equal(now[: len(own)], own)
+        area = _area(mesh if use_modifiers else source.data, now if use_modifiers else own)
         is_unique = len(now) == len(own) or _repeated(mesh, now) <= _repeated(source.data, own)
     read = now if use_modifiers else own
     if len(read) != vertex_count:
         return Rest(None, NOT_AT_ALL)
     by_number = BY_NUMBER if starts_with_own and not use_modifiers else NOT_AT_ALL
-    return Rest(read.astype(np.float64), BY_PLACE if is_unique else by_number)
+    return Rest(read.astype(np.float64), BY_PLACE if is_unique else by_number, area)
+
+
+def _area(mesh: bpy.types.Mesh, places: NDArray[np.float32]) -> float:
+    """The area of the mesh's faces where its vertices are at `places`."""
+    corners = places[read_triangles(mesh)].astype(np.float64)
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(np.linalg.norm(across, axis=1).sum() / 2.0)
 
 
 def _rest_of(mesh: bpy.types.Mesh) -> NDArray[np.float32] | None:
