@@ -13,7 +13,7 @@ from ..inputs.mesh_in import mesh_of
 from .following import Follower
 from .lifting import lift
 from .out_attributes import belongs_to_other_layer, recorded
-from .out_collection import SURFACE_ROLE, find_output, replace_object
+from .out_collection import SURFACE_ROLE, find_output, remove_output, replace_object
 
 
 def output_surface(
@@ -30,6 +30,8 @@ def output_surface(
     """
     existing = holder(context, source, use_modifiers)
     if existing == source:
+        if use_modifiers:  # a copy from when modifiers made other faces has no more to tell
+            remove_output(source, SURFACE_ROLE)
         return source
     if existing is not None and _same_shape(context, source, existing, use_modifiers):
         return existing  # with the other operators' results on it
