@@ -26,8 +26,8 @@ OVERRIDE_TOKEN = "saddleback_override_token"
 
 
 def token_of(item: bpy.types.Object) -> str:
-    """The object's token, "" where it has none."""
-    return str(item.get(TOKEN, "") or getattr(item, OVERRIDE_TOKEN, ""))
+    """The object's token, "" where it has none. An override shows its original's, too, until it has its own."""
+    return str(getattr(item, OVERRIDE_TOKEN, "") or item.get(TOKEN, ""))
 
 
 def layer_of(source: bpy.types.Object) -> str:

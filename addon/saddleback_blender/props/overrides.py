@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Keeps what a library override keeps. Of an object that overrides another file's, Blender saves only registered
-properties that may be overridden, and from 5.0 on no groups of them: token and settings are kept as texts besides.
+properties that may be overridden, and from 5.0 on no groups of them: token, settings and what we noted on the object
+are kept as texts besides.
 """
 
 from __future__ import annotations
@@ -12,9 +13,13 @@ import bpy
 from bpy.app.handlers import persistent
 from bpy.props import StringProperty
 
+from ..bridge.outputs.out_looks import BY_HAND, BY_LOOK
+from ..bridge.outputs.rest_places import KEPT
 from ..bridge.tokens import OVERRIDE_TOKEN
 
 SETTINGS = "saddleback_override_settings"
+NOTES = "notes"  # beside the settings: custom properties of the object
+NOTED = (BY_HAND, BY_LOOK, KEPT)
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -24,6 +29,8 @@ def write_texts(*_: Any) -> None:
 
     for item in _overrides():
         told = told_settings(item)
+        if told:
+            told[NOTES] = {key: item[key] for key in NOTED if key in item}
         text = json.dumps(told, sort_keys=True) if told else ""
         if getattr(item, SETTINGS) != text:
             setattr(item, SETTINGS, text)
@@ -36,7 +43,13 @@ def read_texts(*_: Any) -> None:
 
     for item in _overrides():
         if getattr(item, SETTINGS):
-            take_settings(item, json.loads(getattr(item, SETTINGS)))
+            told = json.loads(getattr(item, SETTINGS))
+            take_settings(item, told)
+            for key in NOTED if NOTES in told else ():
+                if key in told[NOTES]:
+                    item[key] = told[NOTES][key]
+                elif key in item:  # what the original has
+                    del item[key]
 
 
 def _overrides() -> list[bpy.types.Object]:
