@@ -236,8 +236,10 @@ def group_input_identifiers(group: bpy.types.NodeTree) -> dict[str, str]:
 
 
 def set_modifier_input(modifier: bpy.types.Modifier, name: str, value: Any) -> None:
-    """Sets an input of a Geometry Nodes modifier by its name."""
-    identifier = group_input_identifiers(modifier.node_group)[name]
+    """Sets an input of a Geometry Nodes modifier by its name, unless an artist has renamed it or taken it away."""
+    identifier = group_input_identifiers(modifier.node_group).get(name)
+    if identifier is None:
+        return
     inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
     if inputs is not None:  # 5.2 on
         getattr(inputs, identifier).value = value
@@ -249,8 +251,10 @@ def set_modifier_input(modifier: bpy.types.Modifier, name: str, value: Any) -> N
 
 
 def modifier_input(modifier: bpy.types.Modifier, name: str) -> Any:
-    """The value of an input of a Geometry Nodes modifier."""
-    identifier = group_input_identifiers(modifier.node_group)[name]
+    """The value of an input of a Geometry Nodes modifier; None where an artist has renamed it or taken it away."""
+    identifier = group_input_identifiers(modifier.node_group).get(name)
+    if identifier is None:
+        return None
     inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
     return getattr(inputs, identifier).value if inputs is not None else modifier[identifier]
 

@@ -78,9 +78,10 @@ def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, sca
     if modifier is None:
         # Each output has a group of its own: the object stands on the node, which works alike in all versions.
         modifier = add_first(item, "Saddleback Instances", _new_instances_group())
-    info = next(node for node in modifier.node_group.nodes if node.type == "OBJECT_INFO")
-    rollback.remember(info.inputs["Object"], "default_value")
-    info.inputs["Object"].default_value = instance
+    info = next((node for node in modifier.node_group.nodes if node.type == "OBJECT_INFO"), None)
+    if info is not None:  # an artist may edit the group
+        rollback.remember(info.inputs["Object"], "default_value")
+        info.inputs["Object"].default_value = instance
     set_input(modifier, "Scale", scale)
     return modifier
 

@@ -44,3 +44,64 @@ def test_an_override_replaces_what_it_has_and_shows_again_what_it_hid(tmp_path, 
         assert len(roles) == len(set(roles))
         bpy.ops.wm.save_as_mainfile(filepath=path)
         bpy.ops.wm.open_mainfile(filepath=path)
+
+
+def add_key(item):
+    item.shape_key_add(name="Basis")
+    item.shape_key_add(name="Blown up").data[0].co.x += 1.0
+
+
+def show_material(item):
+    item.data.materials.append(bpy.data.materials.new("Mine"))
+    item.data.polygons[0].material_index = len(item.data.materials) - 1
+
+
+EDITS = {
+    "key": add_key,
+    "map": lambda item: item.data.uv_layers.new(name="Mine"),
+    "attribute": lambda item: item.data.attributes.new("Mine", "FLOAT", "FACE"),
+    "material": show_material,
+}
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_layers_that_an_artist_added_to_an_output_are_not_lost(edit):
+    item = sphere()
+    bpy.ops.saddleback.tessellate(count=9, make_cells=True)
+    edited = find_output(item, "cells").data
+    EDITS[edit](find_output(item, "cells"))
+    bpy.ops.saddleback.tessellate(count=12, make_cells=True)
+    assert bpy.data.objects["Sphere Cells Edited"].data == edited and find_output(item, "cells").data != edited
+    bpy.ops.saddleback.tessellate(count=9, make_cells=True)
+    assert len(bpy.data.objects) == 4  # the sphere, edges, cells and the edited cells
+
+
+def test_materials_and_slots_alone_are_no_edit():
+    item = sphere()
+    bpy.ops.saddleback.tessellate(count=9, make_cells=True)
+    find_output(item, "cells").data.materials[0] = bpy.data.materials.new("Mine")
+    find_output(item, "cells").data.materials.append(None)
+    bpy.ops.saddleback.tessellate(count=12, make_cells=True)
+    assert len(bpy.data.objects) == 3 and find_output(item, "cells").material_slots[0].name == "Mine"
+
+
+def test_our_groups_and_marks_may_be_edited():
+    """Each ended in a Python error."""
+    item, leaf = sphere(), sphere("Leaf", 1)
+    bpy.context.view_layer.objects.active = item
+    settings = {"count": 9, "make_centers": True, "instance_object": "Leaf"}
+    bpy.ops.saddleback.tessellate(**settings)
+    for group in bpy.data.node_groups:
+        if hasattr(group, "interface"):
+            inputs = [socket for socket in group.interface.items_tree if socket.in_out == "INPUT"]
+        else:
+            inputs = list(group.inputs)
+        for socket in inputs[1:]:
+            socket.name = f"My {socket.name}"
+        for node in [node for node in group.nodes if node.type == "OBJECT_INFO"]:
+            group.nodes.remove(node)
+    bpy.ops.saddleback.tessellate(**settings)
+    del find_output(item, "edges")["saddleback_role"]
+    bpy.ops.saddleback.tessellate(**settings)
+    assert bpy.ops.saddleback.clear() == {"FINISHED"}
+    assert set(bpy.data.objects) == {item, leaf, bpy.data.objects["Sphere Edges"]}

@@ -15,8 +15,15 @@ import numpy as np
 from ... import compat, rollback
 from ...nodes import FOLLOW, modifier_of
 from ..tokens import LAYER, LOCAL, MARKS, MATERIALS, NAME, OWN_MARKS, PLACE, ROLE, SOURCE
+from .out_attributes import recorded
 
 CONTENT = "saddleback_content"  # on outputs: a hash of the data that we gave it
+LAYERS = "saddleback_layers"  # on outputs: the names of the layers that it had then, one a line
+# Attributes that Blender makes by itself, or of what it kept otherwise in other versions.
+OF_BLENDER = {
+    "position", "material_index", "sharp_face", "sharp_edge", "crease_vert", "crease_edge", "bevel_weight_vert",
+    "bevel_weight_edge", "custom_normal", "uv_seam", "id",
+}  # fmt: skip
 COLOR_STEPS = 1023  # of color channels, which Blender's versions may tell with another last digit
 
 _kept: list[str] = []  # sentences on what was kept
@@ -26,20 +33,23 @@ def stamp(items: list[bpy.types.Object]) -> None:
     """Writes on outputs that are new what their data are."""
     for item in items:
         if CONTENT not in item:
-            rollback.remember_keys(item, CONTENT)
-            item[CONTENT] = _content(item)
+            _note(item)
 
 
 def is_edited(item: bpy.types.Object) -> bool:
-    """Tells whether an output's data are others than we gave it."""
-    return CONTENT in item and item[CONTENT] != _content(item)
+    """Tells whether an output's data are others than we gave it, or have more layers."""
+    return CONTENT in item and (item[CONTENT] != _content(item) or _has_more(item))
 
 
 def accept(item: bpy.types.Object) -> None:
     """Takes what was edited as ours: a run has read it, and goes on from it."""
     if is_edited(item):
-        rollback.remember_keys(item, CONTENT)
-        item[CONTENT] = _content(item)
+        _note(item)
+
+
+def _note(item: bpy.types.Object) -> None:
+    rollback.remember_keys(item, CONTENT, LAYERS)
+    item[CONTENT], item[LAYERS] = _content(item), "\n".join(sorted(_layers(item)))
 
 
 def keep_data(item: bpy.types.Object) -> None:
@@ -66,7 +76,7 @@ def keep_object(item: bpy.types.Object) -> None:
 
 def make_ordinary(item: bpy.types.Object) -> None:
     """Takes off an output all that makes it one."""
-    keys = (ROLE, NAME, PLACE, LOCAL, MARKS, OWN_MARKS, MATERIALS, CONTENT, SOURCE, LAYER)
+    keys = (ROLE, NAME, PLACE, LOCAL, MARKS, OWN_MARKS, MATERIALS, CONTENT, LAYERS, SOURCE, LAYER)
     rollback.remember_keys(item, *keys)
     for key in keys:
         if key in item:
@@ -78,6 +88,28 @@ def notes() -> list[str]:
     told = list(_kept)
     _kept.clear()
     return told
+
+
+def _has_more(item: bpy.types.Object) -> bool:
+    """Tells whether data got attributes, maps or shape keys, or faces that show a material which was added."""
+    if LAYERS in item and not _layers(item) <= set(str(item[LAYERS]).split("\n")):
+        return True
+    if item.type != "MESH" or not len(item.data.polygons):
+        return False
+    given = len(str(item.get(MATERIALS, "")).split("\n"))
+    numbers = compat.read_numbers(item.data.polygons, "material_index")
+    return len(item.data.materials) > given and int(numbers.max()) >= given
+
+
+def _layers(item: bpy.types.Object) -> set[str]:
+    """The names of an output's attributes, maps and shape keys, but for Blender's own and what runs wrote there."""
+    keys = item.data.shape_keys
+    names = set() if keys is None else {f"key {key.name}" for key in keys.key_blocks}
+    if item.type == "MESH":
+        there = {layer.name for layers in (item.data.attributes, item.data.uv_layers) for layer in layers}
+        names |= {name for name in there if not name.startswith(".") or name == ".sculpt_mask"}
+        names -= OF_BLENDER | set(recorded(item.data))
+    return names
 
 
 def _content(item: bpy.types.Object) -> str:

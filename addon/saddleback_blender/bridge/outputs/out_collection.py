@@ -169,9 +169,9 @@ def _all_of(source: bpy.types.Object) -> list[bpy.types.Object]:
         return []
     by_role: dict[tuple[str, str], list[bpy.types.Object]] = {}
     for item in bpy.data.objects:
-        is_ours = item.get(SOURCE) == token and item.library is None and item != source
+        is_ours = item.get(SOURCE) == token and ROLE in item and item.library is None and item != source
         if is_ours and (item.parent is None or item.parent == source or token_of(item.parent) != token):
-            by_role.setdefault((str(item.get(ROLE)), str(item.get(LAYER, ""))), []).append(item)
+            by_role.setdefault((str(item[ROLE]), str(item.get(LAYER, ""))), []).append(item)
     return [_original(candidates) for candidates in by_role.values()]
 
 
