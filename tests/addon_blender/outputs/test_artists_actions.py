@@ -105,3 +105,30 @@ def test_our_groups_and_marks_may_be_edited():
     bpy.ops.saddleback.tessellate(**settings)
     assert bpy.ops.saddleback.clear() == {"FINISHED"}
     assert set(bpy.data.objects) == {item, leaf, bpy.data.objects["Sphere Edges"]}
+
+
+def test_what_bands_show_is_no_material_of_the_artist_s():
+    item = sphere()
+    names = ["Skin", "Horn"]
+    for name in names:
+        item.data.materials.append(bpy.data.materials.new(name))
+    for face in item.data.polygons:
+        face.material_index = int(face.center.z > 0.0)
+    bpy.ops.saddleback.apply_look(look="BANDS")
+    bpy.ops.saddleback.layer_add()
+    bpy.ops.saddleback.tessellate(count=50, region="MATERIAL", region_name="Horn", make_dual=True)
+    dual = find_output(item, "dual").data
+    assert [material.name for material in dual.materials] == names
+    assert min(vertex.co.z for vertex in dual.vertices) > -0.1
+
+
+@pytest.mark.parametrize("look", ["BANDS", "REMESH"])
+def test_no_look_leaves_its_ground_below_another(look):
+    item = sphere(subdivisions=2)
+    bpy.ops.saddleback.apply_look(look="PANELS")
+    assert tuple(item.color) != (1.0, 1.0, 1.0, 1.0)
+    bpy.ops.saddleback.apply_look(look=look)
+    assert tuple(item.color) == (1.0, 1.0, 1.0, 1.0)
+    assert look == "BANDS" or not find_output(item, "dual").material_slots
+    bpy.ops.saddleback.clear()
+    assert not item.material_slots

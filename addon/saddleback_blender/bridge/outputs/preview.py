@@ -17,11 +17,8 @@ import numpy as np
 from ... import compat, nodes, rollback
 from ...core.results import Reals
 from ...finishes import GROUND
+from ..inputs.materials_in import ADDED_SLOT, BEFORE, PREVIEW, is_of
 from .out_attributes import recorded, write_vertex_attributes
-
-KIND = "distance"
-ADDED_SLOT = "saddleback_preview_slot"  # on an object: the slot that a mesh without materials was given
-BEFORE = "saddleback_before_preview_"  # on an object, with a slot's number: the material that was linked to the object
 
 COLORS = "saddleback_distance_color"  # of a mesh's vertices
 
@@ -48,7 +45,7 @@ def show_preview(
 
     `distances` (V,) are its values.
     """
-    _remember(item)
+    hide_preview(item, GROUND)
     material = _own_material(item)
     if material is None:
         material = _new_material()
@@ -57,8 +54,7 @@ def show_preview(
         item.data.materials.append(None)
         item[ADDED_SLOT] = True
     for number, slot in enumerate(item.material_slots):
-        is_ours = _is_preview(slot.material) or _is_of(slot.material, GROUND)
-        if slot.link == "OBJECT" and slot.material is not None and not is_ours:
+        if slot.link == "OBJECT" and slot.material is not None and not is_of(slot.material, PREVIEW):
             item[f"{BEFORE}{number}"] = slot.material
         slot.link = "OBJECT"
         slot.material = material
@@ -88,13 +84,13 @@ def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
             item.color = material.diffuse_color
 
 
-def hide_preview(item: bpy.types.Object, kind: str = KIND) -> bool:
+def hide_preview(item: bpy.types.Object, kind: str = PREVIEW) -> bool:
     """Gives the object its own materials back; says whether it showed a preview, or what else begins with `kind`."""
     _remember(item)
-    if kind == KIND and COLORS in item.data.attributes and COLORS in recorded(item.data):
+    if kind == PREVIEW and COLORS in item.data.attributes and COLORS in recorded(item.data):
         rollback.remember_attribute(item.data, COLORS)
         item.data.attributes.remove(item.data.attributes[COLORS])
-    shown = [(number, slot) for number, slot in enumerate(item.material_slots) if _is_of(slot.material, kind)]
+    shown = [(number, slot) for number, slot in enumerate(item.material_slots) if is_of(slot.material, kind)]
     if not shown:
         return False
     materials = {slot.material for _, slot in shown}
@@ -141,18 +137,10 @@ def _remove_if_unused(material: bpy.types.Material) -> None:
         bpy.data.materials.remove(material)
 
 
-def _is_preview(material: bpy.types.Material | None) -> bool:
-    return _is_of(material, KIND)
-
-
-def _is_of(material: bpy.types.Material | None, kind: str) -> bool:
-    return material is not None and str(material.get(nodes.MARK, "")).startswith(kind)
-
-
 def _own_material(item: bpy.types.Object) -> bpy.types.Material | None:
     """The preview of an earlier run, unless another object (a duplicate of this one) shows it as well."""
     for slot in item.material_slots:
-        if _is_preview(slot.material):
+        if is_of(slot.material, PREVIEW):
             uses = sum(other.material == slot.material for other in item.material_slots)
             return slot.material if slot.material.users <= uses and slot.material.library is None else None
     return None
@@ -172,7 +160,7 @@ def _set(material: bpy.types.Material, attribute: str, farthest: float, spacing:
 
 
 def _new_material() -> bpy.types.Material:
-    material, shader = nodes.new_material("Saddleback Distance", KIND)
+    material, shader = nodes.new_material("Saddleback Distance", PREVIEW)
     material.diffuse_color = (*RAMP[1][1], 1.0)
     material.node_tree.links.new(add_ramp(material.node_tree), shader.inputs["Base Color"])
     shader.inputs["Roughness"].default_value = 0.6
