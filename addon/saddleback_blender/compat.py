@@ -278,6 +278,12 @@ def remove_modifier(item: bpy.types.Object, modifier: bpy.types.Modifier) -> Non
     item.modifiers.remove(modifier)
 
 
+def unit_scale(scene: bpy.types.Scene) -> float:
+    """Meters in a world unit. Blender takes no scale into account where a scene has no units, and shows none."""
+    units = scene.unit_settings
+    return 1.0 if units.system == "NONE" else float(units.scale_length)
+
+
 def user_folder(name: str = "graphs") -> str:
     """Tells where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
     is_extension = __package__.startswith("bl_ext.")

@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from .. import jobs, rollback
+from .. import compat, jobs, rollback
 from ..bridge.inputs.mesh_in import read_surface
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
 from ..bridge.outputs import hand_edits
@@ -120,8 +120,8 @@ class SurfaceOperator(PolledOperator):
 
     def measured(self, settings: Settings, surface: Surface, count: int = 0) -> Settings:
         """The settings with all lengths in world units; `count` is the number of cells, where there are cells."""
-        scale = bpy.context.scene.unit_settings.scale_length
-        self._surface, self._lengths = surface, world_lengths(settings, surface, count, scale)
+        self._surface = surface
+        self._lengths = world_lengths(settings, surface, count, compat.unit_scale(bpy.context.scene))
         return replace(settings, **self._lengths)
 
     def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:

@@ -103,8 +103,7 @@ def _solid(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, I
     places, triangles = compat.read_positions(mesh), read_triangles(mesh).copy()
     shown.to_mesh_clear()
     world = np.array(item.matrix_world)
-    scale = context.scene.unit_settings.scale_length
-    return (places @ world[:3, :3].T + world[:3, 3]) / millimeter(scale), triangles
+    return (places @ world[:3, :3].T + world[:3, 3]) / millimeter(compat.unit_scale(context.scene)), triangles
 
 
 CLASSES = (SADDLEBACK_OT_export_stl, SADDLEBACK_OT_export_3mf)

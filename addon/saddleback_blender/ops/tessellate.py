@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import prefs
+from .. import compat, prefs
 from ..blocks import find
 from ..bridge.inputs.density import read_cell_paint, read_density
 from ..bridge.inputs.mesh_in import level_place, mesh_of, read_marks, up_of
@@ -335,12 +335,11 @@ def _lost(result: CellsResult) -> str:
 
 def _units(scene: bpy.types.Scene) -> tuple[Callable[[float], str], Callable[[float], str]]:
     """What writes lengths and volumes of the world as the scene's units are."""
-    settings = scene.unit_settings
 
     def written(kind: str, power: int, value: float) -> str:
-        scaled = value * settings.scale_length**power
-        text: str = bpy.utils.units.to_string(settings.system, kind, scaled, precision=3)
-        return text
+        scaled = value * compat.unit_scale(scene) ** power
+        text: str = bpy.utils.units.to_string(scene.unit_settings.system, kind, scaled, precision=3)
+        return text.strip()
 
     return partial(written, "LENGTH", 1), partial(written, "VOLUME", 3)
 

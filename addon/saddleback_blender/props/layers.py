@@ -92,9 +92,9 @@ def active_layer(source: bpy.types.Object) -> Any:
 
 
 def first_layer(source: bpy.types.Object) -> Any:
-    """The active layer; a first one is made for the settings and outputs of an object that has none."""
-    if not layers_of(source):
-        _new(source, "")
+    """The active layer; one is made for the settings and outputs of an object that has none, or lost it to a script."""
+    if active_layer(source) is None:
+        _new(source, source.saddleback.layer_word)
     return active_layer(source)
 
 

@@ -132,3 +132,36 @@ def test_no_look_leaves_its_ground_below_another(look):
     assert look == "BANDS" or not find_output(item, "dual").material_slots
     bpy.ops.saddleback.clear()
     assert not item.material_slots
+
+
+def test_a_scale_of_units_without_units_is_no_scale(tmp_path, capfd):
+    """As Blender itself has it, which grays the scale out there."""
+    units, path = bpy.context.scene.unit_settings, str(tmp_path / "lamp.stl")
+    item, said = sphere(radius=0.05), []
+    for scale in (1.0, 1000.0):
+        units.system, units.scale_length = "NONE", scale
+        bpy.ops.saddleback.tessellate(
+            count=30, make_shell=True, in_millimeters=True, rib_width_mm=4.0, rib_thickness_mm=3.0
+        )
+        assert max(find_output(item, "shell").dimensions) == pytest.approx(0.103, rel=0.01)
+        bpy.ops.saddleback.export_stl(filepath=path)
+        said.append(
+            [
+                part
+                for part in "".join(capfd.readouterr()).replace("\n", ",").split(",")
+                if "mm" in part or "walls" in part
+            ]
+        )
+    assert said[0] == said[1] and said[0][0] == " walls 0.003 thick"
+
+
+def test_a_layer_that_a_script_took_away_is_made_again():
+    item = sphere()
+    for _ in range(2):
+        bpy.ops.saddleback.layer_add()
+        bpy.ops.saddleback.tessellate(count=9)
+    outputs = set(bpy.data.objects)
+    for remove in (lambda layers: layers.remove(1), lambda layers: layers.clear()):
+        remove(item.saddleback.layers)
+        bpy.ops.saddleback.tessellate(count=9)
+        assert set(bpy.data.objects) == outputs
