@@ -316,7 +316,9 @@ class SurfaceOperator(PolledOperator):
             raise error
         active = active_object(context)
         name = self._task.name if self._task is not None else active.name if active is not None else ""
-        text = str(error) or "there is not enough memory"
+        text = (
+            "there is not enough memory; ask for fewer or larger ones" if isinstance(error, MemoryError) else str(error)
+        )
         if isinstance(error, sb.MeshError):
             text = text.removesuffix("; saddleback.repair mends this")
             source = bpy.data.objects.get(name)

@@ -7,6 +7,7 @@ from scenes import sphere
 from test_rigs import activate, library, link
 
 from saddleback_blender.bridge.outputs.out_collection import find_output
+from saddleback_blender.core import runs
 
 
 def test_a_copy_of_what_modifiers_made_goes_once_the_mesh_has_its_own_faces_again():
@@ -165,3 +166,13 @@ def test_a_layer_that_a_script_took_away_is_made_again():
         remove(item.saddleback.layers)
         bpy.ops.saddleback.tessellate(count=9)
         assert set(bpy.data.objects) == outputs
+
+
+def test_what_memory_does_not_hold_is_told_as_that(monkeypatch):
+    def give_up(*_):
+        raise MemoryError("std::bad_alloc")
+
+    sphere()
+    monkeypatch.setattr(runs, "tessellate", give_up)
+    with pytest.raises(RuntimeError, match="'Sphere': there is not enough memory; ask for fewer or larger ones"):
+        bpy.ops.saddleback.tessellate(count=9)
