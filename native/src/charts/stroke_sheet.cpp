@@ -382,8 +382,8 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   for (const SurfaceCurve& piece : pieces) all.push_back(&piece);
   // Beyond the radius as well, that a triangle with a part within it has no vertex that is farther beyond than `size`.
   const Beads beads(curve, radius + size);
-  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }, stage};
-  BarrierCuts cuts(near, {}, all, "curve: it", &fineness);
+  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }};
+  BarrierCuts cuts(near, {}, all, stage, "curve: it", &fineness);
   Sheet sheet;
   for (Index f = 0; f < near.face_count(); ++f) {
     stage.check();

@@ -118,7 +118,7 @@ BarredMesh add_barriers(const Mesh& whole, const Barriers& barriers, Job* job) {
   whole.require_space("add_barriers");
   const JobStage stage(job, "parting the surface along barriers");
   check(whole, barriers);
-  BarrierCuts cuts(whole, barriers.edges, barriers.curves);
+  BarrierCuts cuts(whole, barriers.edges, barriers.curves, stage.part(0, 0.1));
   stage.update(0.1);
   Cut cut = cut_faces(whole, barriers.left_out, cuts, stage.part(0.1, 0.3));
   const std::vector<Index> nodes = number_vertices(cut, cuts);

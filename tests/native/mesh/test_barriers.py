@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_it_stops_when_silent
 from tests.truth.mazes import curve_through
 
 MESH = sb.Mesh(*meshes.grid(9, 9))  # the unit square, cells of an eighth
@@ -166,6 +167,12 @@ def test_a_point_that_is_left_out_is_refused() -> None:
         barred.to_barred(points)
     with pytest.raises(sb.InputError, match=r"^values: wanted one for each of"):
         barred.least([1.0])
+
+
+def test_a_curve_that_winds_through_few_faces_is_stopped_at_once() -> None:
+    mesh = sb.Mesh(*meshes.tetrahedron())
+    curve = sb.SurfaceCurve(mesh, sb.trace(mesh, 0, 0.3, 20_000.0).surface)
+    check_it_stops_when_silent(lambda job: sb.add_barriers(mesh, curves=[curve], job=job), 0.0)
 
 
 def test_a_cancelled_call_changes_nothing() -> None:

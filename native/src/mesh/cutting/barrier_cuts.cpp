@@ -31,8 +31,9 @@ int parts_of(double way, double length) {
 }  // namespace
 
 BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-                         std::span<const SurfaceCurve* const> curves, const char* only, const Fineness* fineness)
-    : mesh_(mesh), only_(only), fineness_(fineness), lines_(curves.size()) {
+                         std::span<const SurfaceCurve* const> curves, const JobStage& stage, const char* only,
+                         const Fineness* fineness)
+    : mesh_(mesh), stage_(stage), only_(only), fineness_(fineness), lines_(curves.size()) {
   points_.reserve(static_cast<std::size_t>(mesh.vertex_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) points_.push_back(at_vertex(mesh, v));
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(static_cast<Index>(i), *curves[i]);
@@ -56,6 +57,7 @@ void BarrierCuts::follow_curves(std::span<const SurfaceCurve* const> curves) {
     lines_[curve].push_back(first);
     for (; i < pieces_.size() && pieces_[i].curve == curve; ++i) {
       const bool is_last = i + 1 == pieces_.size() || pieces_[i + 1].curve != curve;
+      stage_.check();
       follow(pieces_[i], chain);
       if (fineness_) divide(pieces_[i].face, chain, within);
       for (std::size_t k = 1; k < chain.size(); ++k) {
@@ -206,6 +208,7 @@ void BarrierCuts::cross(std::span<const Index> pieces) {
     ends.push_back({weights(pieces_[i].face, pieces_[i].from), weights(pieces_[i].face, pieces_[i].to)});
   const Index face = pieces_[pieces.front()].face;
   for (std::size_t i = 0; i < ends.size(); ++i) {
+    stage_.check();
     const Vec2 &a = ends[i][0], along = ends[i][1] - a;
     for (std::size_t j = 0; j < i; ++j) {
       const auto& [c, d] = ends[j];
@@ -226,7 +229,7 @@ void BarrierCuts::divide(Index face, std::vector<Index>& chain, std::vector<std:
                b = *barycentric_in(mesh_, points_[chain[k]], face);
     const int parts = parts_of((position(mesh_, {face, b}) - position(mesh_, {face, a})).norm(), fineness_->length);
     for (int i = 1; i < parts; ++i) {
-      fineness_->stage.check();
+      stage_.check();
       const Vec3 between = a + i / static_cast<double>(parts) * (b - a);
       const bool is_within = between.minCoeff() > k_meets;
       finer.push_back(is_within ? new_node(face, between) : node_at(face, between));
@@ -279,7 +282,7 @@ void BarrierCuts::divide_inside(Index face, std::vector<Index>& nodes) {
     limit = std::max(limit * k_shorter, fineness_->length);
     too_long.clear();
     for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
-      fineness_->stage.check();
+      stage_.check();
       const Triangle flat = flat_.triangle(t);
       for (int k = 0; k < 3; ++k) {
         const Index from = flat[k], to = flat[(k + 1) % 3];
@@ -290,7 +293,7 @@ void BarrierCuts::divide_inside(Index face, std::vector<Index>& nodes) {
     }
     if (too_long.empty() && limit == fineness_->length) return;
     for (const auto& [from, to, h] : too_long) {
-      fineness_->stage.check();
+      stage_.check();
       // One that was exchanged since is made good by the node for which it was, or is there in the next round.
       const Triangle flat = flat_.triangle(h / 3);
       if (flat[h % 3] != from || flat[(h % 3 + 1) % 3] != to) continue;
@@ -339,14 +342,16 @@ void BarrierCuts::cut(Index face, std::vector<Triangle>& triangles) {
   flat_.begin({chart.corner[0], chart.corner[1], chart.corner[2]});
   std::vector<Index> nodes = nodes_of(face);
   std::unordered_map<Index, Index> number;
-  for (std::size_t i = 0; i < nodes.size(); ++i)
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    stage_.check();
     number[nodes[i]] = i < 3 ? static_cast<Index>(i) : flat_.add(weights(face, nodes[i]));
+  }
   if (const auto found = edges_in_.find(face); found != edges_in_.end()) {
     for (const Edge& edge : found->second)
-      if (!flat_.connect(number[edge.from], number[edge.to]))
+      if (!flat_.connect(number[edge.from], number[edge.to], stage_))
         throw InputError(message("curves: they cross at too small an angle in face ", face, "; move one of them"));
   }
-  flat_.improve();
+  flat_.improve(stage_);
   if (fineness_) divide_inside(face, nodes);
   for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
     const Triangle flat = flat_.triangle(t);

@@ -22,7 +22,6 @@ namespace saddleback {
 struct Fineness {
   double length;
   std::function<bool(const Vec3& a, const Vec3& b)> is_near;
-  JobStage stage;  ///< may be stopped
 };
 
 /// Nodes are the vertices of the mesh and, numbered after them, the points at which curves bend, meet or cross edges.
@@ -31,9 +30,10 @@ struct Fineness {
 class BarrierCuts {
  public:
   /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where and,
-  /// unless `only` names the only one that can, which.
+  /// unless `only` names the only one that can, which. O(n^2) for n points of curves in a face; `stage` may stop it,
+  /// and later cuts.
   BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-              std::span<const SurfaceCurve* const> curves, const char* only = nullptr,
+              std::span<const SurfaceCurve* const> curves, const JobStage& stage, const char* only = nullptr,
               const Fineness* fineness = nullptr);
 
   /// All nodes on the mesh: those within faces that are divided for fineness once these are cut.
@@ -87,6 +87,7 @@ class BarrierCuts {
   [[noreturn]] void refuse(Index curve, Index node) const;
 
   const Mesh& mesh_;
+  const JobStage stage_;
   const char* only_;
   const Fineness* fineness_;
   SurfacePoints points_;

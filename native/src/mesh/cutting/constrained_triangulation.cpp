@@ -174,10 +174,11 @@ bool ConstrainedTriangulation::flip(Index h) {
   return true;
 }
 
-void ConstrainedTriangulation::legalise() {
+void ConstrainedTriangulation::legalise(const JobStage& stage) {
   // Each exchange lowers the triangulation lifted to a paraboloid, which ends but for rounding of the flat places.
   std::size_t most = 16 * origins_.size() + 64;
   while (!suspects_.empty()) {
+    stage.check();
     const Index h = suspects_.back();
     suspects_.pop_back();
     if (!is_better_flipped(h)) continue;
@@ -188,9 +189,9 @@ void ConstrainedTriangulation::legalise() {
   suspects_.clear();
 }
 
-void ConstrainedTriangulation::improve() {
+void ConstrainedTriangulation::improve(const JobStage& stage) {
   for (std::size_t h = 0; h < origins_.size(); ++h) suspects_.push_back(static_cast<Index>(h));
-  legalise();
+  legalise(stage);
 }
 
 /// The first half-edge out of a vertex counter-clockwise: at the rim the one along it, else any.
@@ -228,7 +229,7 @@ Index ConstrainedTriangulation::toward(Index from, Index end) const {
   return k_none;
 }
 
-bool ConstrainedTriangulation::connect(Index from, Index end) {
+bool ConstrainedTriangulation::connect(Index from, Index end, const JobStage& stage) {
   while (from != end) {
     Index h = toward(from, end);
     if (h == k_none) return true;  // along the rim: an edge already
@@ -236,7 +237,7 @@ bool ConstrainedTriangulation::connect(Index from, Index end) {
     if (side(from, end, stop) != 0) {
       stop = find_crossed(next(h), from, end);
       if (stop == k_none) return false;
-      clear_crossed(from, stop);
+      clear_crossed(from, stop, stage);
       h = find(from, stop);
     }
     fixed_[h] = 1;
@@ -261,8 +262,9 @@ Index ConstrainedTriangulation::find_crossed(Index h, Index from, Index end) {
 }
 
 /// Exchanges triangles until none of the edges crosses the line any more.
-void ConstrainedTriangulation::clear_crossed(Index from, Index end) {
+void ConstrainedTriangulation::clear_crossed(Index from, Index end, const JobStage& stage) {
   for (std::size_t i = 0; i < crossed_.size(); ++i) {
+    stage.check();
     const auto [a, b] = crossed_[i];
     const Index h = find(a, b), c = apex(h), d = apex(twins_[h]);
     const bool meets_end = c == from || d == from || c == end || d == end;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -22,11 +23,13 @@ class ConstrainedTriangulation {
   /// with a triangle near it.
   Index add(const Vec2& weights, Index near_triangle = k_none);
 
-  /// Makes the straight piece an edge, or several where it passes points. False when it crosses an earlier one.
-  bool connect(Index from, Index to);
+  /// Makes the straight piece an edge, or several where it passes points. False when it crosses an earlier one. `stage`
+  /// may stop it, when the triangulation is none.
+  bool connect(Index from, Index to, const JobStage& stage = {});
 
-  /// Exchanges triangles until no edge but the pieces can be bettered.
-  void improve();
+  /// Exchanges triangles until no edge but the pieces can be bettered. `stage` may stop it, when the triangulation is
+  /// none.
+  void improve(const JobStage& stage = {});
 
   std::size_t triangle_count() const { return origins_.size() / 3; }
   Triangle triangle(std::size_t t) const { return {origins_[3 * t], origins_[3 * t + 1], origins_[3 * t + 2]}; }
@@ -51,14 +54,14 @@ class ConstrainedTriangulation {
   Index locate(Index point);
   void split_face(Index t, Index point);
   void split_edge(Index h, Index point);
-  void legalise();
+  void legalise(const JobStage& stage = {});
   bool flip(Index h);
   bool is_better_flipped(Index h) const;
   Index find(Index from, Index to) const;
   Index first_out(Index vertex) const;
   Index toward(Index from, Index to) const;
   Index find_crossed(Index h, Index from, Index end);
-  void clear_crossed(Index from, Index end);
+  void clear_crossed(Index from, Index end, const JobStage& stage);
 
   std::array<Vec2, 3> shape_;
   std::vector<Vec2> weights_, places_;
