@@ -176,3 +176,33 @@ def test_what_memory_does_not_hold_is_told_as_that(monkeypatch):
     monkeypatch.setattr(runs, "tessellate", give_up)
     with pytest.raises(RuntimeError, match="'Sphere': there is not enough memory; ask for fewer or larger ones"):
         bpy.ops.saddleback.tessellate(count=9)
+
+
+def test_clearing_one_of_two_objects_with_a_mesh_leaves_the_bands_of_the_other():
+    one = sphere(subdivisions=2)
+    other, third = (bpy.data.objects.new(name, one.data) for name in ("Other", "Third"))
+    third.modifiers.new("Fine", "SUBSURF")
+    for item in (other, third):
+        bpy.context.scene.collection.objects.link(item)
+    before = {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "materials", "node_groups", "collections")}
+    for item in (one, third, other):
+        activate(item)
+        bpy.ops.saddleback.apply_look(look="BANDS")
+    for item in (third, one):
+        activate(item)
+        assert bpy.ops.saddleback.clear() == {"FINISHED"}
+        assert other.material_slots[0].material is not None
+        assert {"saddleback_distance", "saddleback_distance_color"} <= set(one.data.attributes.keys())
+    activate(other)
+    bpy.ops.saddleback.clear()
+    assert not one.data.materials and not [
+        layer for layer in one.data.attributes if layer.name.startswith("saddleback")
+    ]
+    assert before == {kind: len(getattr(bpy.data, kind)) for kind in before}
+
+
+def test_the_last_layer_is_deleted_with_its_ground():
+    item = sphere(subdivisions=2)
+    bpy.ops.saddleback.apply_look(look="PANELS")
+    bpy.ops.saddleback.layer_delete()
+    assert not bpy.data.materials and not item.material_slots and list(bpy.data.objects) == [item]

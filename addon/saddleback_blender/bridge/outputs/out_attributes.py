@@ -107,9 +107,17 @@ def forget_layer_names(mesh: bpy.types.Mesh, layer: str) -> int:
     return len(own)
 
 
-def recorded(mesh: bpy.types.Mesh) -> list[str]:
-    """The attributes that we wrote, whether or not they still exist."""
-    return list(_writers(mesh))
+def recorded(mesh: bpy.types.Mesh, item: bpy.types.Object | None = None) -> list[str]:
+    """The attributes that we wrote, whether or not they still exist; with an object those of others with its mesh not
+    among them.
+    """
+    others = set() if item is None else {token for twin in twins_of(item) if owns(twin, token := token_of(twin))}
+    return [name for name, writer in _writers(mesh).items() if writer.partition("/")[0] not in others - {""}]
+
+
+def twins_of(item: bpy.types.Object) -> list[bpy.types.Object]:
+    """The other objects with the same data."""
+    return [twin for twin in bpy.data.objects if twin.data == item.data and twin != item]
 
 
 def belongs_to_other_layer(source: bpy.types.Object, name: str) -> bool:
@@ -126,14 +134,8 @@ def clear_attributes(source: bpy.types.Object, layer: str | None = None) -> int:
     mesh = source.data
     if not is_editable(mesh):
         return 0
-    twins = [item for item in bpy.data.objects if item.data == mesh and item != source]
     writers = _writers(mesh)
-    others = {token for item in twins for token in {token_of(item)} if token and owns(item, token)}
-    own = [
-        name
-        for name, writer in writers.items()
-        if writer.partition("/")[0] not in others and layer in (None, writer.partition("/")[2])
-    ]
+    own = [name for name in recorded(mesh, source) if layer in (None, writers[name].partition("/")[2])]
     count = 0
     for name in own:
         attribute = mesh.attributes.get(name)

@@ -18,7 +18,7 @@ from ... import compat, nodes, rollback
 from ...core.results import Reals
 from ...finishes import GROUND
 from ..inputs.materials_in import ADDED_SLOT, BEFORE, PREVIEW, is_of
-from .out_attributes import recorded, write_vertex_attributes
+from .out_attributes import recorded, twins_of, write_vertex_attributes
 
 COLORS = "saddleback_distance_color"  # of a mesh's vertices
 
@@ -87,7 +87,7 @@ def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
 def hide_preview(item: bpy.types.Object, kind: str = PREVIEW) -> bool:
     """Gives the object its own materials back; says whether it showed a preview, or what else begins with `kind`."""
     _remember(item)
-    if kind == PREVIEW and COLORS in item.data.attributes and COLORS in recorded(item.data):
+    if kind == PREVIEW and COLORS in item.data.attributes and COLORS in recorded(item.data, item):
         rollback.remember_attribute(item.data, COLORS)
         item.data.attributes.remove(item.data.attributes[COLORS])
     shown = [(number, slot) for number, slot in enumerate(item.material_slots) if is_of(slot.material, kind)]
@@ -107,10 +107,14 @@ def hide_preview(item: bpy.types.Object, kind: str = PREVIEW) -> bool:
         del item[key]
     if ADDED_SLOT in item:
         del item[ADDED_SLOT]
-        if len(item.data.materials) == 1 and item.data.materials[0] is None:
+        other = next((twin for twin in twins_of(item) if any(slot.material for slot in twin.material_slots)), None)
+        if other is not None:  # shows its own in that slot
+            rollback.remember_keys(other, ADDED_SLOT)
+            other[ADDED_SLOT] = True
+        elif len(item.data.materials) == 1 and item.data.materials[0] is None:
             compat.remove_material_slots(item.data)
     for material in materials:
-        rollback.when_written(partial(_remove_if_unused, material))
+        rollback.when_written(partial(_remove_if_unused, material.name))
     return bool(shown)
 
 
@@ -132,8 +136,9 @@ def _put_back(item: bpy.types.Object, slots: list[tuple[str, bpy.types.Material 
         compat.remove_material_slots(item.data)
 
 
-def _remove_if_unused(material: bpy.types.Material) -> None:
-    if material.users == 0:
+def _remove_if_unused(name: str) -> None:
+    material = bpy.data.materials.get(name)  # gone where all unused ones were removed
+    if material is not None and material.users == 0 and nodes.is_ours(material):
         bpy.data.materials.remove(material)
 
 
