@@ -2,8 +2,9 @@
 """What artists do between two runs: whatever it is, what was made stands in a known relation to what is there."""
 
 import bpy
+import numpy as np
 import pytest
-from scenes import sphere
+from scenes import positions, sphere
 from test_rigs import activate, library, link
 
 from saddleback_blender.bridge.outputs.out_collection import find_output
@@ -206,3 +207,16 @@ def test_the_last_layer_is_deleted_with_its_ground():
     bpy.ops.saddleback.apply_look(look="PANELS")
     bpy.ops.saddleback.layer_delete()
     assert not bpy.data.materials and not item.material_slots and list(bpy.data.objects) == [item]
+
+
+def test_each_field_of_a_mesh_has_its_own_symmetry():
+    item = sphere()
+    shapes = {"count": 40, "field_source": "ATTRIBUTE", "direction_attribute": "along"}
+    bpy.ops.saddleback.direction_field(symmetry="1", direction_attribute="along")
+    bpy.ops.saddleback.distribute(**shapes)
+    before = positions(find_output(item, "shapes").data)
+    bpy.ops.saddleback.direction_field(symmetry="4", direction_attribute="crosses")
+    bpy.ops.saddleback.distribute(**shapes)
+    np.testing.assert_array_equal(positions(find_output(item, "shapes").data), before)
+    bpy.ops.saddleback.clear()
+    assert not list(item.data.keys())

@@ -13,7 +13,7 @@ from ...core.fields.given_fields import flow_of_polygons
 from ...core.requests import GivenDirections
 from ...core.results import Reals
 from ...core.settings import DirectionFieldSettings
-from ..outputs.out_field import SYMMETRY
+from ..outputs.out_attributes import symmetry_of
 from .density import colors_of_tiles, to_vertices
 from .mesh_in import read_triangle_polygons, scale_of, scaled
 from .voronoi_in import read_triangle_corners
@@ -58,7 +58,7 @@ def read_directions(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -
         polygons = read_triangle_polygons(mesh)
     elif attribute.domain == "CORNER":
         vectors = np.stack([to_vertices(mesh, column, "CORNER") for column in vectors.T], axis=1)
-    symmetry = int(mesh.get(SYMMETRY, source.data.get(SYMMETRY, 1)))
+    symmetry = symmetry_of(mesh, name) or symmetry_of(source.data, name)
     return GivenDirections(vectors, symmetry if symmetry in (1, 2, 4) else 1, f"attribute '{name}'", polygons)
 
 

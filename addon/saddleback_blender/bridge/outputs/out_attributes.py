@@ -18,6 +18,8 @@ from ..tokens import SOURCE, layer_of, owns, source_token, token_of
 # On a mesh: the attributes that we wrote, each with the token of the object that they are of, and the word of the layer
 # behind a "/", in JSON. Files of older versions have names only, one a line. Clear removes these and no others.
 RECORD = "saddleback_attributes"
+# On a mesh: how many directions the attribute that was written last stands for; and each of ours, by its name, in JSON.
+SYMMETRY, SYMMETRIES = "saddleback_symmetry", "saddleback_symmetries"
 
 # dtype kind and trailing shape -> attribute type, its element property, and the dtype that is copied without a loop.
 KINDS: dict[tuple[str, tuple[int, ...]], tuple[str, str, type[np.generic]]] = {
@@ -144,7 +146,38 @@ def clear_attributes(source: bpy.types.Object, layer: str | None = None) -> int:
             mesh.attributes.remove(attribute)
             count += 1
     _keep(mesh, {name: token for name, token in writers.items() if name not in own})
+    _keep_symmetries(mesh, _symmetries(mesh))
     return count
+
+
+def note_symmetry(mesh: bpy.types.Mesh, name: str, symmetry: int) -> None:
+    """Notes how many directions an attribute of vectors stands for."""
+    _keep_symmetries(mesh, {**_symmetries(mesh), name: symmetry})
+    if mesh.get(SYMMETRY) != symmetry:
+        rollback.remember_keys(mesh, SYMMETRY)
+        mesh[SYMMETRY] = symmetry
+
+
+def symmetry_of(mesh: bpy.types.Mesh, name: str) -> int:
+    """Tells how many directions an attribute stands for: of one that is not ours what the mesh says; 0: unknown."""
+    return int(_symmetries(mesh).get(name, mesh.get(SYMMETRY, 0)))
+
+
+def _symmetries(mesh: bpy.types.Mesh) -> dict[str, int]:
+    return dict(json.loads(str(mesh.get(SYMMETRIES, "{}"))))
+
+
+def _keep_symmetries(mesh: bpy.types.Mesh, symmetries: dict[str, int]) -> None:
+    """Those of attributes that are there; without any the mesh says nothing."""
+    there = {name: symmetry for name, symmetry in symmetries.items() if name in mesh.attributes}
+    text = json.dumps(there, sort_keys=True)
+    if text == mesh.get(SYMMETRIES, "{}"):
+        return
+    rollback.remember_keys(mesh, SYMMETRY, SYMMETRIES)
+    mesh[SYMMETRIES] = text
+    for key in () if there else (SYMMETRY, SYMMETRIES):
+        if key in mesh:
+            del mesh[key]
 
 
 def _writers(mesh: bpy.types.Mesh) -> dict[str, str]:

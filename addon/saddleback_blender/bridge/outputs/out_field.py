@@ -11,20 +11,18 @@ from ...core.fields.arrow_mesh import arrow_mesh
 from ...core.results import FieldResult, Reals
 from ..inputs.mesh_in import level_place, scale_of
 from .following import Follower
-from .out_attributes import write_attributes
+from .out_attributes import note_symmetry, write_attributes
 from .out_collection import replace_object
 from .out_curves import Lines, write_lines
 
 ARROWS_ROLE, STREAMLINES_ROLE = "arrows", "streamlines"
-SYMMETRY = "saddleback_symmetry"  # custom property of the mesh: how many directions the attribute stands for
 
 
 def write_directions(source: bpy.types.Object, surface: bpy.types.Object, name: str, result: FieldResult) -> None:
     """Writes the field as unit vectors in the source's own space on the mesh of `surface`."""
     own = _own_directions(source, result.directions)
     write_attributes(surface, result.domain, {name: own.astype(np.float32)})
-    if surface.data.get(SYMMETRY) != result.symmetry:
-        surface.data[SYMMETRY] = result.symmetry
+    note_symmetry(surface.data, name, result.symmetry)
 
 
 def write_arrows(
