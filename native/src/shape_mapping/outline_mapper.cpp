@@ -52,10 +52,11 @@ MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& plac
   double radius = 0;
   for (const Vec2& corner : corners_) radius = std::max(radius, corner.norm());
   MapFailure failure = MapFailure::none;
-  plane_.about_point(placement.center, placement.angle, box_, limits.largest * radius, [&](Index vertex) {
-    failure = look_at(vertex);
-    return failure == MapFailure::none;
-  });
+  plane_.about_point(placement.center, placement.angle, box_, limits.largest * radius,
+                     [&](Index vertex, std::span<const ShapeMap::Spoke> about) {
+                       failure = look_at(vertex, about);
+                       return failure == MapFailure::none;
+                     });
   if (failure != MapFailure::none) return failure;
   settled_ = plane_.vertices().size();
   return cut();
@@ -194,6 +195,21 @@ double OutlineMapper::cross_weight(Index h, const Vec2& a, const Vec2& b) const 
   return right + left > 0 ? right / (right + left) : 0.5;
 }
 
+/// Tells of most faces, without roots, that they are laid out well: the sum of the squares of the singular values is at
+/// least the square of the larger one, and their product is the ratio of the areas.
+bool OutlineMapper::is_soundly_laid(Index face) const {
+  constexpr double k_margin = 1e-6;  // far above the rounding of triangles that are no needles
+  const Vec2& a = place(mesh_->from(3 * face));
+  const Vec2 u1 = place(mesh_->to(3 * face)) - a, u2 = place(mesh_->apex(3 * face)) - a;
+  const auto [p, q, r] = mesh_->corners(3 * face);
+  const Vec3 e1 = q - p, e2 = r - p;
+  const double xx = e1.squaredNorm(), yy = e2.squaredNorm(), xy = e1.dot(e2);
+  const double area = cross(u1, u2), square = xx * yy - xy * xy;
+  const double sum = (1 + k_margin) * (u2.squaredNorm() * xx + u1.squaredNorm() * yy - 2 * u1.dot(u2) * xy);
+  return area > 0 && square > k_margin * xx * yy && sum <= limits_.largest * limits_.largest * area * area &&
+         square >= limits_.smallest * limits_.smallest * sum;
+}
+
 /// Finds the singular values of the map from the plane to a face, and whether it is laid out well.
 MapFailure OutlineMapper::measure(Index face, Stretch& stretch) const {
   const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
@@ -212,24 +228,21 @@ MapFailure OutlineMapper::measure(Index face, Stretch& stretch) const {
 }
 
 /// Looks at the faces, of those about vertices in the shape, whose last corner this is.
-MapFailure OutlineMapper::look_at(Index vertex) {
+MapFailure OutlineMapper::look_at(Index vertex, std::span<const ShapeMap::Spoke> about) {
   const Vec2& at = place(vertex);
   const bool is_in = is_in_shape(at);
   if (is_in && mesh_->is_boundary(vertex)) return MapFailure::boundary;
-  if (is_in) inside_stamps_[vertex] = stamp_;
-  enum State : std::uint8_t { unknown, outside, inside };
-  const auto state_of = [&](Index other) {
-    if (!plane_.is_settled(other)) return unknown;
-    return has_inside(other) ? inside : outside;
-  };
-  State next = state_of(mesh_->to(mesh_->first_halfedge(vertex)));
-  for (const Index h : outgoing(*mesh_, vertex)) {
-    const State apex = state_of(mesh_->apex(h));
-    if (next != unknown && apex != unknown && (is_in || next == inside || apex == inside)) {
-      Stretch stretch;
-      if (const MapFailure failure = measure(Mesh::face_of(h), stretch); failure != MapFailure::none) return failure;
-    }
-    next = apex;  // of which the next half-edge goes there
+  if (is_in) {
+    inside_stamps_[vertex] = stamp_;
+    plane_.mark_inside(vertex);
+  }
+  using enum ShapeMap::State;
+  for (const auto& [h, to, apex, to_state, apex_state] : about) {
+    if (std::min(to_state, apex_state) < settled || !(is_in || std::max(to_state, apex_state) == inside)) continue;
+    const Index face = Mesh::face_of(h);
+    if (is_soundly_laid(face)) continue;
+    Stretch stretch;
+    if (const MapFailure failure = measure(face, stretch); failure != MapFailure::none) return failure;
   }
   return MapFailure::none;
 }

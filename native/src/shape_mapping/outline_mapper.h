@@ -64,8 +64,9 @@ class OutlineMapper {
   struct Stretch {
     double smallest = 0, largest = 0;
   };
+  bool is_soundly_laid(Index face) const;
   MapFailure measure(Index face, Stretch& stretch) const;
-  MapFailure look_at(Index vertex);
+  MapFailure look_at(Index vertex, std::span<const ShapeMap::Spoke> about);
   void enter(Index face);
   void find_inside();
   bool is_in_shape(const Vec2& vertex) const;

@@ -33,16 +33,18 @@ bool is_beyond(const PlaneBox& box, const Vec2& a, const Vec2& b) {
 ShapeMap::ShapeMap(const Mesh& mesh)
     : mesh_(&mesh),
       bend_(std::make_unique<CurveBend>()),
-      nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0, 0, State::waiting}) {}
+      nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0}),
+      status_(nodes_.size(), 0) {}
 
 ShapeMap::~ShapeMap() = default;
 ShapeMap::ShapeMap(ShapeMap&&) noexcept = default;
 ShapeMap& ShapeMap::operator=(ShapeMap&&) noexcept = default;
 
 void ShapeMap::begin() {
-  if (++stamp_ == 0) {  // after 2^32 maps the old stamps would come again
-    for (Node& node : nodes_) node.stamp = 0;
-    stamp_ = 1;
+  stamp_ += k_states;
+  if (stamp_ == 0) {  // after 2^30 maps the old stamps would come again
+    std::ranges::fill(status_, 0);
+    stamp_ = k_states;
   }
   reached_.clear();
   queue_.clear();
@@ -119,22 +121,19 @@ void ShapeMap::seed_segment(const CurveSegment& segment, double start) {
     const double foot = along.dot(arm), miss = std::max({0.0, -foot, foot - segment.length});
     const Index vertex = mesh_->from(3 * segment.face + i);
     const bool is_new = !has(vertex);
-    Node& node = reach(vertex);
-    if (is_new || miss < node.key) node = {{start + foot, cross(along, arm)}, miss, 0, stamp_, State::source};
+    Node& node = reach(vertex, State::source);
+    if (is_new || miss < node.key) node = {{start + foot, cross(along, arm)}, miss, 0};
   }
 }
 
-ShapeMap::Node& ShapeMap::reach(Index vertex) {
-  Node& node = nodes_[vertex];
-  if (node.stamp != stamp_) {
-    node.stamp = stamp_;
-    reached_.push_back(vertex);
-  }
-  return node;
+ShapeMap::Node& ShapeMap::reach(Index vertex, State state) {
+  if (!has(vertex)) reached_.push_back(vertex);
+  set(vertex, state);
+  return nodes_[vertex];
 }
 
 void ShapeMap::put(Index vertex, const Vec2& place, double key, double miss, State state) {
-  reach(vertex) = {place, key, miss, stamp_, state};
+  reach(vertex, state) = {place, key, miss};
   queue_.push_back({key, vertex});
   std::push_heap(queue_.begin(), queue_.end());
 }
@@ -144,10 +143,10 @@ void ShapeMap::march(const PlaneBox& box, const Watch& watch) {
     const Entry entry = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();
-    Node& node = nodes_[entry.vertex];
-    if (node.state == State::settled || node.key != entry.key) continue;
-    node.state = State::settled;
-    if (watch && !watch(entry.vertex)) return;
+    if (state_of(entry.vertex) >= State::settled || nodes_[entry.vertex].key != entry.key) continue;
+    set(entry.vertex, State::settled);
+    find_spokes(entry.vertex);
+    if (watch && !watch(entry.vertex, spokes_)) return;
     look_about(entry.vertex, box);
   }
 }
@@ -159,20 +158,36 @@ bool ShapeMap::is_out_of_reach(Index from, Index to) const {
   return (begin + foot * along).squaredNorm() > reach_ * reach_;
 }
 
+/// Both the watch and the march go around each vertex: what they ask is looked up once.
+void ShapeMap::find_spokes(Index vertex) {
+  spokes_.clear();
+  const Index first = mesh_->first_halfedge(vertex);
+  Index h = first, to = mesh_->to(h);
+  State to_state = state_of(to);
+  do {
+    const Index last = Mesh::prev(h), apex = mesh_->from(last);
+    const State apex_state = state_of(apex);
+    spokes_.push_back({h, to, apex, to_state, apex_state});
+    to = apex;  // of which the next half-edge goes there
+    to_state = apex_state;
+    h = mesh_->twin(last);
+  } while (h != k_none && h != first);
+}
+
 /// Looks through every edge of the vertex's faces that has now both ends settled.
 void ShapeMap::look_about(Index vertex, const PlaneBox& box) {
   const Vec2 place = nodes_[vertex].place;
   const bool is_near = (mesh_->position(vertex) - center_).squaredNorm() <= reach_ * reach_;
-  const auto is_open = [&](Index other) {
-    return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place) &&
+  const auto is_open = [&](Index other, State state) {
+    return state >= State::source && !is_beyond(box, place, nodes_[other].place) &&
            (is_near || !is_out_of_reach(vertex, other));
   };
-  bool is_next_open = is_open(mesh_->to(mesh_->first_halfedge(vertex)));
-  for (const Index h : outgoing(*mesh_, vertex)) {
-    const bool is_apex_open = is_open(mesh_->apex(h));
-    if (is_next_open) look_through(h);
-    if (is_apex_open) look_through(Mesh::prev(h));
-    is_next_open = is_apex_open;  // the apex is where the next half-edge goes
+  bool is_next_open = is_open(spokes_[0].to, spokes_[0].to_state);
+  for (const auto& [h, to, apex, to_state, apex_state] : spokes_) {
+    const bool is_apex_open = is_open(apex, apex_state);
+    if (is_next_open && apex_state == State::waiting) look_through(h, vertex, to, apex);
+    if (is_apex_open && to_state == State::waiting) look_through(Mesh::prev(h), apex, vertex, to);
+    is_next_open = is_apex_open;
   }
 }
 
@@ -181,9 +196,8 @@ Sight ShapeMap::sight_through(const UnfoldedTriangle& triangle, const Vec2& from
   return sight_of_line(triangle, from, to, bend_->curvature(0.5 * (from.x() + to.x()), triangle.edge));
 }
 
-void ShapeMap::look_through(Index halfedge) {
-  const Index from = mesh_->from(halfedge), to = mesh_->to(halfedge), apex = mesh_->apex(halfedge);
-  if (has(apex) && nodes_[apex].state >= State::source) return;
+/// Sees the apex, which waits, through the half-edge.
+void ShapeMap::look_through(Index halfedge, Index from, Index to, Index apex) {
   const UnfoldedTriangle triangle(mesh_->corners(halfedge));
   const Sight sight = sight_through(triangle, nodes_[from].place, nodes_[to].place);
   // What is not seen well waits for an edge that it may be seen through after all.
@@ -202,7 +216,7 @@ void ShapeMap::complete(Index face) {
     if (has(apex) || !has(from) || !has(to)) continue;
     const UnfoldedTriangle triangle(mesh_->corners(h));
     const Vec2 place = sight_through(triangle, nodes_[from].place, nodes_[to].place).place;
-    reach(apex) = {place, 0, 0, stamp_, State::waiting};
+    reach(apex, State::waiting) = {place, 0, 0};
   }
 }
 

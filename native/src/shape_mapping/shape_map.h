@@ -37,8 +37,20 @@ class ShapeMap {
   ShapeMap(ShapeMap&&) noexcept;
   ShapeMap& operator=(ShapeMap&&) noexcept;
 
-  /// A function that is called with each vertex whose coordinates are found, the nearest first, until it returns false.
-  using Watch = std::function<bool(Index vertex)>;
+  enum class State : std::uint8_t {
+    waiting,  ///< for a better or nearer edge to be seen through, or not reached
+    source,   ///< at or beside the center or curve
+    settled,
+    inside,  ///< settled, and marked by the watch
+  };
+  /// A half-edge out of a vertex, to where, and the third corner of its face.
+  struct Spoke {
+    Index halfedge, to, apex;
+    State to_state, apex_state;
+  };
+  /// A function that is called with each vertex whose coordinates are found and those about it, the nearest first,
+  /// until it returns false.
+  using Watch = std::function<bool(Index vertex, std::span<const Spoke> about)>;
 
   /// The exponential map: the center at the origin, the x axis at `angle` in the FaceChart of center.face. At a vertex
   /// angles are scaled so that its total angle becomes 2 pi. Where the surface folds, the plane may be laid back and
@@ -56,9 +68,9 @@ class ShapeMap {
   /// A face on which the origin lies.
   Index center_face() const { return center_face_; }
 
-  bool has(Index vertex) const { return nodes_[vertex].stamp == stamp_; }
-  /// Has coordinates that were found on the way, not laid out beside others.
-  bool is_settled(Index vertex) const { return has(vertex) && nodes_[vertex].state == State::settled; }
+  bool has(Index vertex) const { return status_[vertex] >= stamp_; }
+  /// Marks a vertex that is settled.
+  void mark_inside(Index vertex) { set(vertex, State::inside); }
   /// Returns the coordinates of a vertex vertex that has some.
   const Vec2& coordinates(Index vertex) const { return nodes_[vertex].place; }
   /// All vertices that have coordinates, in no particular order.
@@ -78,17 +90,11 @@ class ShapeMap {
   SurfacePoint surface_point(const Vec2& point, Index face) const;
 
  private:
-  enum class State : std::uint8_t {
-    waiting,  ///< for a better or nearer edge to be seen through
-    source,   ///< at or beside the center or curve
-    settled,
-  };
+  static constexpr std::uint32_t k_states = 4;
   struct Node {
     Vec2 place;
     double key;   ///< in the queue: the distance from the source, if it is seen
     double miss;  ///< by how much the line of sight misses the edge
-    std::uint32_t stamp;
-    State state;
   };
   struct Entry {
     double key;
@@ -100,13 +106,18 @@ class ShapeMap {
   void seed_face(const SurfacePoint& center, double angle);
   void seed_star(const SurfacePoint& center, Index vertex, double angle);
   void seed_segment(const CurveSegment& segment, double start);
-  Node& reach(Index vertex);
+  Node& reach(Index vertex, State state);
   void put(Index vertex, const Vec2& place, double key, double miss, State state);
   void put_source(Index vertex, const Vec2& place) { put(vertex, place, distance_of(place), 0, State::source); }
   void march(const PlaneBox& box, const Watch& watch);
+  State state_of(Index vertex) const {
+    return static_cast<State>(has(vertex) ? status_[vertex] - stamp_ : static_cast<std::uint32_t>(State::waiting));
+  }
+  void set(Index vertex, State state) { status_[vertex] = stamp_ + static_cast<std::uint32_t>(state); }
+  void find_spokes(Index vertex);
   void look_about(Index vertex, const PlaneBox& box);
   bool is_out_of_reach(Index from, Index to) const;
-  void look_through(Index halfedge);
+  void look_through(Index halfedge, Index from, Index to, Index apex);
   double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
 
   Sight sight_through(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) const;
@@ -114,9 +125,11 @@ class ShapeMap {
   const Mesh* mesh_;
   std::unique_ptr<CurveBend> bend_;  ///< of the curve
   std::vector<Node> nodes_;
+  std::vector<std::uint32_t> status_;  ///< the stamp of the map that reached the vertex last, and the state by then
   std::vector<Index> reached_;
   std::vector<Entry> queue_;
-  std::uint32_t stamp_ = 0;
+  std::vector<Spoke> spokes_;  ///< of the vertex that was settled last
+  std::uint32_t stamp_ = 0;    ///< a multiple of k_states
   Index center_face_ = 0;
   bool along_curve_ = false;
   Vec3 center_ = Vec3::Zero();
