@@ -1,9 +1,11 @@
 #pragma once
 // Tests whether copies centered anywhere in a cell certainly meet what lies on the surface, or its border.
 
+#include <optional>
 #include <vector>
 
 #include "saddleback/distribution/distribution.h"
+#include "saddleback/mesh/trace.h"
 
 #include "distribution/placing_rules.h"
 #include "support/box_tree.h"
@@ -46,12 +48,17 @@ class CoverageTest {
   void list_forbidden_faces();
   /// How copies bend counts where a proof is wanted; to look for room they are near enough to straight ones.
   bool proves_bent() const { return options_->maximal && options_->bend; }
-  Cover straight_cover(const CellView& view, const Copy& copy, const Neighbors& near) const;
+  Cover straight_cover(const CellView& view, const Copy& copy, const Neighbors& near, double tolerance) const;
   Cover bent_cover(const Cell& cell, const CellView& view, Index kind, const Copy& copy, double tolerance) const;
-  bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbors& near) const;
-  bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
+  /// Points of a copy, in its own plane, and where they lie on the surface: many are asked for again.
+  using Traced = std::vector<std::pair<Vec2, std::optional<TraceEnd>>>;
+  std::optional<TraceEnd> trace(const CellView& view, const Copy& copy, const Vec2& point) const;
+  bool is_traced_into_another(const CellView& view, const Copy& copy, const Motion& motion) const;
+  bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Traced& traced,
+                Vec2& place) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found, const Pose& pose,
-                  Index other) const;
+                  Index other, Traced& traced) const;
+  bool meets_border(const CellView& view, const Copy& copy, const Motion& motion) const;
   double depth_at(const SurfacePoint& point) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion, const Vec2& point) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
