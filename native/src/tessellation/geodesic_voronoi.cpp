@@ -56,8 +56,10 @@ struct PieceSide {
 };
 
 /// Appends the segments between the pieces of a face, given by their sides.
-void add_segments(std::span<const PieceSide> sides, Index first_point, std::vector<Segment>& segments) {
+void add_segments(std::span<const PieceSide> sides, Index first_point, const JobStage& stage,
+                  std::vector<Segment>& segments) {
   for (const PieceSide& a : sides) {
+    stage.check();
     if (a.from > a.to) continue;
     for (const PieceSide& b : sides) {
       if (b.from != a.to || b.to != a.from || b.cell == a.cell) continue;
@@ -68,7 +70,8 @@ void add_segments(std::span<const PieceSide> sides, Index first_point, std::vect
   }
 }
 
-std::vector<Segment> find_segments(const GeodesicVoronoi& cells, Index first_point, int threads) {
+std::vector<Segment> find_segments(const GeodesicVoronoi& cells, Index first_point, int threads,
+                                   const JobStage& stage) {
   constexpr Index k_block = 512;  // pieces; each begins with the first whole face
   const std::span<const GeodesicVoronoi::Piece> pieces = cells.pieces;
   const auto count = static_cast<Index>(pieces.size()), blocks = (count + k_block - 1) / k_block;
@@ -89,7 +92,7 @@ std::vector<Segment> find_segments(const GeodesicVoronoi& cells, Index first_poi
         for (Index i = 0; i < pieces[end].count; ++i)
           sides.push_back({loop[i], loop[(i + 1) % pieces[end].count], pieces[end].cell});
       }
-      add_segments(sides, first_point, segments);
+      add_segments(sides, first_point, stage, segments);
     }
     of_blocks[block] = std::move(segments);
   });
@@ -314,6 +317,7 @@ GeodesicVoronoi make_diagram(const Mesh& mesh, const FaceCandidates& candidates,
   result.positions.resize(count);
   result.point_distance.resize(count);
   parallel_for(count, threads, 256, [&](Index i, int) {
+    stage.check();
     result.positions[i] = position(mesh, result.points[i]);
     result.point_distance[i] = candidate_at(result, mesh, result.points[i]).distance;
   });
@@ -324,7 +328,7 @@ GeodesicVoronoi subdivision(const FaceCandidates& candidates, const SurfacePoint
                             const JobStage& stage) {
   GeodesicVoronoi result = divide_faces(candidates, threads, stage.part(0, 0.7));
   result.sites = sites;
-  const std::vector<Segment> segments = find_segments(result, candidates.table().vertex_count, threads);
+  const std::vector<Segment> segments = find_segments(result, candidates.table().vertex_count, threads, stage);
   stage.check();
   parallel_for(2, threads, 1, [&](Index task, int) {
     if (task == 0)  // by one thread, and takes as long as the areas by many

@@ -87,7 +87,7 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
       occupants_(surface.halfedge_count(), {k_far, 0}) {}
 
 void ExactPropagation::run(const JobStage& stage) {
-  start();
+  start(stage);
   do {
     while (queue_->advance() && queue_->reached() <= options_.limit) {
       while (WindowBlock* const block = queue_->take()) drain(block, stage);
@@ -155,6 +155,7 @@ void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
       if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
       if (window.halfedge >= 0) {
         if (surface_.has_sources_beside(window.halfedge)) [[unlikely]] {
+          stage.check();  // there may be many
           pass_sources(window);
         } else {
           propagate(window);
@@ -183,7 +184,7 @@ double ExactPropagation::share_done() const {
   return std::max(vertices, radius * radius);
 }
 
-void ExactPropagation::start() {
+void ExactPropagation::start(const JobStage& stage) {
   for (Index i = 0; i < static_cast<Index>(sources_.size()); ++i) {
     const Index vertex = vertex_at(surface_.mesh(), sources_[i]);
     if (vertex != k_none) offer(surface_.vertex_of(vertex), 0, {0, 0, Arrival::k_at_source, i});
@@ -191,6 +192,7 @@ void ExactPropagation::start() {
   const SourceInFace* last = nullptr;
   for (const SourceInFace& place : surface_.sources_in_faces()) {
     const bool is_repeated = last && last->face == place.face && last->barycentric == place.barycentric;
+    stage.check();
     if (!is_repeated) start_in_face(place);
     last = &place;
   }

@@ -59,7 +59,7 @@ class ExactPropagation {
     double distance, split;
   };
 
-  void start();
+  void start(const JobStage& stage);
   void start_in_face(const SourceInFace& place);
   void fetch(Index halfedge) const;
   void drain(WindowBlock* block, const JobStage& stage);

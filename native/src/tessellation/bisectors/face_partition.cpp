@@ -35,7 +35,7 @@ void scale(std::vector<FacePlane>& planes) {
 
 }  // namespace
 
-bool FacePartition::build(const std::vector<FacePlane>& planes) {
+bool FacePartition::build(const std::vector<FacePlane>& planes, const JobStage& stage) {
   planes_ = planes;
   scale(planes_);
   vertices_.clear();
@@ -43,6 +43,7 @@ bool FacePartition::build(const std::vector<FacePlane>& planes) {
   for (int corner = 0; corner < 3; ++corner) vertices_.push_back({Vec3::Unit(corner), k_corner, {0, k_none, k_none}});
   pieces_.push_back({planes.front().site, {0, 1, 2}});
   for (Index plane = 1; plane < static_cast<Index>(planes.size()); ++plane) {
+    stage.check();
     if (!insert(plane)) return false;
   }
   return true;
@@ -56,7 +57,7 @@ bool FacePartition::insert(Index plane) {
   cuts_.clear();
   std::vector<Piece> kept, taken;
   kept.reserve(pieces_.size() + 1);
-  for (const Piece& piece : pieces_) {
+  for (Piece& piece : pieces_) {
     if (!cut(piece, plane, kept, taken)) return false;
   }
   if (!merge(taken)) return false;
@@ -85,7 +86,11 @@ bool FacePartition::is_below(const FacePlane& plane, Index vertex) const {
 
 /// Divides a piece into what stays with its site and what the plane's site takes. Pieces are convex: if their vertices'
 /// signs change more than twice, they are wrong.
-bool FacePartition::cut(const Piece& piece, Index plane, std::vector<Piece>& kept, std::vector<Piece>& taken) {
+bool FacePartition::cut(Piece& piece, Index plane, std::vector<Piece>& kept, std::vector<Piece>& taken) {
+  if (std::ranges::none_of(piece.loop, [&](Index v) { return below_[v] != 0; })) {
+    kept.push_back(std::move(piece));
+    return true;
+  }
   Piece stays{piece.site, {}}, goes{planes_[plane].site, {}};
   stays.loop.reserve(piece.loop.size() + 1);
   goes.loop.reserve(piece.loop.size() + 1);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -35,8 +36,9 @@ class FacePartition {
   };
 
   /// The planes in increasing order of site, at least one. Vertices 0..2 are the corners.
-  /// False where signs contradict each other: products of distances underflow.
-  bool build(const std::vector<FacePlane>& planes);
+  /// False where signs contradict each other: products of distances underflow. O(n^2) for n planes that count.
+  /// \throw Cancelled, when it is none.
+  bool build(const std::vector<FacePlane>& planes, const JobStage& stage = {});
 
   const std::vector<Vertex>& vertices() const { return vertices_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
@@ -56,7 +58,7 @@ class FacePartition {
  private:
   bool insert(Index plane);
   bool is_below(const FacePlane& plane, Index vertex) const;
-  bool cut(const Piece& piece, Index plane, std::vector<Piece>& kept, std::vector<Piece>& taken);
+  bool cut(Piece& piece, Index plane, std::vector<Piece>& kept, std::vector<Piece>& taken);
   Index crossing(Index a, Index b, Index site, Index plane);
   std::array<Index, 3> planes_at_crossing(Index a, Index b, Index site, Index plane) const;
   Vec3 meeting_place(const Vertex& vertex) const;

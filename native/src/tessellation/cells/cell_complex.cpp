@@ -19,7 +19,8 @@ namespace {
 class CellComplex {
  public:
   CellComplex(const FaceCandidates& candidates, int threads, const JobStage& stage)
-      : candidates_(candidates),
+      : stage_(stage),
+        candidates_(candidates),
         table_(candidates.table()),
         threads_(threads),
         edges_(3 * static_cast<std::size_t>(candidates.shared_count())),
@@ -156,7 +157,7 @@ class CellComplex {
     for (const FaceCandidate& candidate : candidates_.candidates(shared))
       worker.planes.push_back({candidate.site, candidate.squared_distance});
     const Index face = candidates_.face(shared);
-    if (!worker.partition.build(worker.planes) || !agrees_with_edges(face, worker))
+    if (!worker.partition.build(worker.planes, stage_) || !agrees_with_edges(face, worker))
       worker.partition.build_star({side_of(face, 0), side_of(face, 1), side_of(face, 2)});
     add_pieces(face, block, worker);
   }
@@ -224,6 +225,7 @@ class CellComplex {
     }
   }
 
+  const JobStage& stage_;
   const FaceCandidates& candidates_;
   const FaceTable& table_;
   const int threads_;

@@ -63,13 +63,14 @@ double distance_at(const FaceRefinement::Part& part, const FaceCandidate& candid
 
 /// Places that show who owns what in a part, barycentric: beside the ends of the bisectors, on all sides of them, and
 /// in the middle of each site's piece, however thin it is.
-std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidates) {
+std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidates, const JobStage& stage) {
   constexpr double k_aside = 0.1;
   std::vector<FacePlane> planes;
   for (const FaceCandidate& candidate : candidates) planes.push_back({candidate.site, candidate.squared_distance});
   FacePartition partition;
   std::vector<Vec3> places;
-  if (!partition.build(planes)) return places;  // distances so unlike that no place says more than the corners do
+  if (!partition.build(planes, stage))
+    return places;  // distances so unlike that no place says more than the corners do
   const std::vector<FacePartition::Vertex>& vertices = partition.vertices();
   std::vector<std::uint8_t> is_placed(vertices.size(), 0);
   for (const FacePartition::Piece& piece : partition.pieces()) {
@@ -88,7 +89,12 @@ std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidat
 
 ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites, std::vector<double> tolerances,
                        int threads, const JobStage& stage)
-    : field_(field), sites_(sites), tolerances_(std::move(tolerances)), threads_(threads), refinement_(field.mesh()) {
+    : field_(field),
+      sites_(sites),
+      tolerances_(std::move(tolerances)),
+      threads_(threads),
+      stage_(stage),
+      refinement_(field.mesh()) {
   look_at_mesh_vertices(stage.part(0, 0.3));
   const std::size_t most = k_some_parts + k_parts_each * (field.mesh().face_count() + sites.size());
   state_.assign(field.mesh().face_count(), State::due);
@@ -108,7 +114,7 @@ ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites,
     least = least > 1 ? least / k_finer : 0;
     Index seen = 0;  // parts before it were looked at ahead
     for (Index part = 0; part < static_cast<Index>(state_.size()); ++part) {
-      if (part == seen) seen = look_ahead(part, least, stage);
+      if (part == seen) seen = look_ahead(part, least);
       Look& at = next_->part == part ? *next_++ : look;
       if (state_[part] == State::done) continue;
       goes_on = true;
@@ -127,7 +133,7 @@ ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites,
 
 /// Looks at some parts from one on by all threads, in case nothing changes about them until it is their turn. Returns
 /// the part after them.
-Index ExactParts::look_ahead(Index part, double least, const JobStage& stage) {
+Index ExactParts::look_ahead(Index part, double least) {
   constexpr std::size_t k_looks = 1024;  // few of which are lost: one in a hundred on scans
   std::size_t count = 0;
   looks_.resize(k_looks + 1);  // the last for none
@@ -138,7 +144,7 @@ Index ExactParts::look_ahead(Index part, double least, const JobStage& stage) {
   }
   looks_[count].part = k_none;
   parallel_for(static_cast<Index>(count), threads_, 16, [&](Index i, int) {
-    stage.check();
+    stage_.check();
     fetch(looks_.data() + i, looks_.data() + count);
     look_at(looks_[i].part, looks_[i]);
   });
@@ -221,6 +227,7 @@ void ExactParts::look_at_mesh_vertices(const JobStage& stage) {
   std::vector<Distances> distances(mesh.vertex_count());
   for (Index face = 0; face < mesh.face_count(); ++face) {
     if (face % 256 == 0) stage.update(static_cast<double>(face) / mesh.face_count());
+    stage.check();
     const WaysToFace to_face = field_.ways_to(face);
     for (int i = 0; i < 3; ++i) add_distances(to_face, Vec3::Unit(i), distances[mesh.triangles()[face][i]]);
   }
@@ -340,7 +347,8 @@ bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const Look
            });
   };
   if (std::ranges::all_of(candidates, is_seen)) return true;
-  for (const Vec3& x : places_by_bisectors(candidates)) {
+  for (const Vec3& x : places_by_bisectors(candidates, stage_)) {
+    stage_.check();
     const Index nearest = sites_[look.ways().nearest_at(place_in(part, x)).source];
     double least = k_infinity, of_nearest = k_infinity;
     for (const FaceCandidate& candidate : candidates) {
@@ -359,7 +367,10 @@ bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const Look
 bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Look& look,
                       const Ways* straight, double tolerance) const {
   std::vector<std::uint8_t> is_rival;
-  for (const FaceCandidate& candidate : candidates) is_rival.push_back(!is_beaten(candidate, candidates));
+  for (const FaceCandidate& candidate : candidates) {
+    stage_.check();  // of many in a part each is compared with each
+    is_rival.push_back(!is_beaten(candidate, candidates));
+  }
   // Corners are samples, too, where more is told of a site than its distance: what the others see lies between.
   if (!straight)
     for (const std::span<const Known> corner : corners_of(part))
@@ -397,6 +408,7 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCa
 ExactParts::Ways ExactParts::ways_seen(const Look& look) const {
   Ways seen;
   for (const FaceCandidate& candidate : look.candidates) {
+    stage_.check();
     double least = k_infinity;
     const Way* best = nullptr;
     for (const Ways& ways : look.at_samples) {
@@ -414,6 +426,7 @@ ExactParts::Ways ExactParts::ways_seen(const Look& look) const {
 bool ExactParts::explain(const FaceRefinement::Part& part, const Look& look, const Ways& ways,
                          std::span<const Vec3> places) const {
   for (const Vec3& x : places) {
+    stage_.check();
     const Vec3 inside = place_in(part, x);
     const Vec2 place = field_.place_of({part.face, inside});
     double least = k_infinity;
@@ -428,6 +441,7 @@ bool ExactParts::explain(const FaceRefinement::Part& part, const Look& look, con
 bool ExactParts::straighten(const FaceRefinement::Part& part, Look& look, double tolerance) const {
   Ways ways = ways_seen(look);
   std::erase_if(ways, [&](const Way& way) {
+    stage_.check();
     const auto candidate = std::ranges::find(look.candidates, way.source, &FaceCandidate::site);
     return is_beaten(*candidate, look.candidates);
   });
@@ -451,7 +465,8 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, Look& look, double
   }
   std::vector<FaceCandidate> straight;
   find_candidates(part, {told[0], told[1], told[2]}, straight);
-  look.tells = fits(part, straight, look, &ways, tolerance) && explain(part, look, ways, places_by_bisectors(straight));
+  look.tells =
+      fits(part, straight, look, &ways, tolerance) && explain(part, look, ways, places_by_bisectors(straight, stage_));
   return look.tells;
 }
 

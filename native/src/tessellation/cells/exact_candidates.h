@@ -66,7 +66,7 @@ class ExactParts {
     bool are_fewer = false;
     const WaysToFace& ways() const { return are_fewer ? inside : *known; }
   };
-  Index look_ahead(Index part, double least, const JobStage& stage);
+  Index look_ahead(Index part, double least);
   void look_at(Index index, Look& look) const;
   void tell_corners(const Look& look);
   void fetch(const Look* look, const Look* end) const;
@@ -106,6 +106,7 @@ class ExactParts {
   const std::vector<Index>& sites_;
   const std::vector<double> tolerances_;  ///< by component
   const int threads_;
+  const JobStage stage_;
   FaceRefinement refinement_;
   LargeArray<Vertex> vertices_;
   LargeArray<Known> known_;         ///< of vertices, by source
