@@ -231,7 +231,7 @@ double way_over_corner(const GeodesicVoronoi& cells, const Mesh& mesh, const Sur
 /// Returns the sites that may be seen straight from a place by a shorter way than the one known: those that are nearer
 /// as the bird flies, whether or not they own something near there.
 std::vector<Index> sites_in_reach(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoints& places,
-                                  std::span<const double> known) {
+                                  std::span<const double> known, const JobStage& stage) {
   constexpr double k_bird = 1 + 1e-12;
   std::vector<Vec3> positions;
   Eigen::AlignedBox3d box;
@@ -243,6 +243,7 @@ std::vector<Index> sites_in_reach(const GeodesicVoronoi& cells, const Mesh& mesh
   std::ranges::sort(along);
   std::vector<std::uint8_t> is_in_reach(positions.size(), 0);
   for (std::size_t i = 0; i < places.size(); ++i) {
+    stage.check();
     const Vec3 place = position(mesh, places[i]);
     const double reach = mesh.in_space(known[i] * k_bird);
     auto site = std::ranges::lower_bound(along, std::pair(place[axis] - reach, Index(0)));
@@ -277,12 +278,12 @@ std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, cons
   }
   std::vector<double> known;
   for (const SurfacePoint& place : places) {
-    if (result.size() % 256 == 0) stage.check();
+    stage.check();
     result.push_back({candidate_at(*this, mesh, place).cell, 0});
     known.push_back(way_over_corner(*this, mesh, place));
   }
   SurfacePoints rival_sites;
-  for (const Index rival : sites_in_reach(*this, mesh, places, known)) rival_sites.push_back(sites[rival]);
+  for (const Index rival : sites_in_reach(*this, mesh, places, known, stage)) rival_sites.push_back(sites[rival]);
   const std::vector<PointFan> fans = find_fans(graph, rival_sites, stage.part(0, 0.2));
   known = distances_at(
       graph, rival_sites, fans, [&](Index vertex) { return vertex_distance[vertex]; }, places, std::move(known),
