@@ -11,6 +11,7 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_it_stops_when_silent
 
 Point = list[Fraction]
 
@@ -110,3 +111,9 @@ def test_nothing_and_bad_input() -> None:
     job.cancel()
     with pytest.raises(sb.Cancelled):
         sb.self_crossings(*meshes.icosphere(3), job=job)
+
+
+def test_a_heap_in_which_all_cross_is_stopped_at_once() -> None:
+    corners = np.random.default_rng(1).random((60_000, 3))
+    heap = np.arange(60_000).reshape(-1, 3)
+    check_it_stops_when_silent(lambda job: sb.self_crossings(corners, heap, job=job), 0.0)

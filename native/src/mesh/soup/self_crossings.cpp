@@ -148,15 +148,14 @@ std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices,
   };
   std::vector<Worker> workers(thread_count(threads));
   const auto look = [&](Index a, Index b, int thread) {
+    stage.check();  // in a heap of triangles one meets thousands
     if (crossings.cross(a, b)) workers[thread].found.push_back({std::min(a, b), std::max(a, b)});
   };
   if (owners) {
     parallel_for(static_cast<Index>(groups.size()), threads, 1, [&](Index place, int thread) {
       tree.visit_later(place, [&](Index g, Index h) {
-        groups[g].tree.visit_both(groups[h].tree, [&](Index i, Index j) {
-          stage.check();
-          look(groups[g].triangles[i], groups[h].triangles[j], thread);
-        });
+        groups[g].tree.visit_both(
+            groups[h].tree, [&](Index i, Index j) { look(groups[g].triangles[i], groups[h].triangles[j], thread); });
       });
     });
   } else if (!groups.empty()) {
