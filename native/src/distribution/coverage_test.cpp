@@ -32,6 +32,8 @@ constexpr Index k_border_corners = 24;
 constexpr std::int64_t k_most_traced = 10'000;
 /// Lengths on a copy that bends are no more than so many times longer or shorter than in its plane, see MapLimits.
 constexpr double k_most_stretch = 2;
+/// Points of a copy that have to land in others: one alone may be led astray by a sliver.
+constexpr int k_traced_points = 2;
 /// Disks looked at before all of them are: the largest, which tell most cells.
 constexpr std::size_t k_first_disks = 6;
 
@@ -244,10 +246,11 @@ bool CoverageTest::is_certain(const CellView& view, const Copy& copy, const Moti
   return depth - motion.of(deepest) * (1 + bending(deepest, place)) > rounded;
 }
 
-/// Tells whether some point of the copies certainly lies in a copy that is there: each is traced over the surface, to a
+/// Tells whether points of the copies certainly lie in copies that are there: each is traced over the surface, to a
 /// face which that copy touches. Where the surface bends much planes foresee little. For leaves: it takes a tenth of
 /// the time that laying a copy there takes, but more than to foresee.
 bool CoverageTest::is_traced_into_another(const CellView& view, const Copy& copy, const Motion& motion) const {
+  int within = 0;
   for (const Disk& disk : std::views::reverse(copy.body->disks)) {  // the tips first
     const std::optional<TraceEnd> end = trace(view, copy, disk.center);
     if (!end || end->hit_boundary) continue;
@@ -257,8 +260,8 @@ bool CoverageTest::is_traced_into_another(const CellView& view, const Copy& copy
       const double depth = -there.placement.scale * there.body->distance.exact(place / there.placement.scale);
       return depth - moved > k_rounding * (copy.radius() + there.radius());
     };
-    if (settled_->visit_touching(end->point.face, {end->point.barycentric[1], end->point.barycentric[2]}, is_within))
-      return true;
+    const Vec2 weights(end->point.barycentric[1], end->point.barycentric[2]);
+    if (settled_->visit_touching(end->point.face, weights, is_within) && ++within == k_traced_points) return true;
   }
   return false;
 }
