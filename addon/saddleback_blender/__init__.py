@@ -35,5 +35,6 @@ def unregister() -> None:
     from . import jobs, ops, prefs, props, translations, ui
 
     atexit.unregister(unregister)
+    globals()["__addon_enabled__"] = False  # or Blender would do all of this again, in vain, when it ends after Python
     for module in (ui, ops, jobs, prefs, props, translations):
         module.unregister()

@@ -115,7 +115,7 @@ def test_quitting_is_clean_and_quick(tmp_path, text):
     done = subprocess.run(
         [*command, str(script)], capture_output=True, text=True, timeout=120, env={**os.environ}, check=False
     )
-    assert done.returncode == 0, done.stderr[-2000:]
+    assert done.returncode == 0 and "Traceback" not in done.stderr + done.stdout, done.stderr[-2000:]
     ended = time.monotonic()
     quits_at = next(line.split()[-1] for line in done.stdout.splitlines() if line.startswith("quits at"))
     assert ended - float(quits_at) < 8  # the run itself takes longer

@@ -117,6 +117,15 @@ def test_paint_makes_cells_smaller_there_and_leaves_some_elsewhere():
     assert len(set(attribute(item, "saddleback_cell")[top])) > 190
 
 
+def save_as_version_0_1(path):
+    bpy.app.handlers.save_pre.remove(old_files.mark)
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    finally:
+        bpy.app.handlers.save_pre.append(old_files.mark)
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+
+
 def test_a_file_of_version_0_1_runs_as_it_did(tmp_path):
     item = sphere()
     name = item.name
@@ -124,12 +133,7 @@ def test_a_file_of_version_0_1_runs_as_it_did(tmp_path):
     item.saddleback.tessellate.edge_radius = 0.03
     item.saddleback.distance.isoline_count = 5
     select(item, [0])
-    bpy.app.handlers.save_pre.remove(old_files.mark)
-    try:
-        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
-    finally:
-        bpy.app.handlers.save_pre.append(old_files.mark)
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
+    save_as_version_0_1(tmp_path / "old.blend")
     item = bpy.data.objects[name]
     settings = item.saddleback.tessellate
     assert (settings.lengths, settings.use_modifiers, settings.density_smaller_by) == ("ABSOLUTE", False, 0.0)
@@ -142,6 +146,22 @@ def test_a_file_of_version_0_1_runs_as_it_did(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "new.blend"))
     assert bpy.data.objects["New"].saddleback.tessellate.lengths == "RELATIVE"
     assert new is not None and bpy.data.objects[name].saddleback.tessellate.lengths == "ABSOLUTE"
+
+
+def test_centres_of_version_0_1_are_centers(tmp_path):
+    item = sphere()
+    name, settings = item.name, item.saddleback.tessellate
+    run(pressed_tessellate(**QUICK, make_centers=True))
+    find_output(item, "centers")["saddleback_role"] = "centres"
+    settings.property_unset("make_centers")
+    settings["make_centres"] = True
+    save_as_version_0_1(tmp_path / "old.blend")
+    item = bpy.data.objects[name]
+    assert item.saddleback.tessellate.make_centers
+    bpy.context.view_layer.objects.active = item
+    bpy.ops.saddleback.tessellate(count=30, k=30)
+    assert len(find_output(item, "centers").data.vertices) == 30
+    assert sum("Centers" in other.name for other in bpy.data.objects) == 1
 
 
 def test_what_a_run_said_belongs_to_its_object_and_is_kept_in_the_file(tmp_path):

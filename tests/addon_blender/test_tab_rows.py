@@ -90,8 +90,7 @@ def test_at_most_ten_settings_are_shown_before_advanced(name, painted):
     family = [top, *(panel for panel in panels.CLASSES if getattr(panel, "bl_parent_id", "") == top.__name__)]
     shown = [setting for panel in family for setting in drawn_by(panel, panel is top)]
     assert len(shown) == len(set(shown)) and shown
-    most = MOST_SETTINGS + 2 * (painted and name == "tessellate")  # the group's name and how much smaller
-    assert len(shown) <= most, shown
+    assert len(shown) <= MOST_SETTINGS, shown
 
 
 @pytest.mark.parametrize("name", list(PROPERTIES))

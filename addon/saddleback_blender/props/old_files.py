@@ -8,9 +8,13 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
+from ..bridge.outputs.out_collection import outputs_of
+from ..bridge.tokens import ROLE
 from .layers import first_layer, has_settings
 
 LAYOUT = 1  # of the kept settings; in version 0.1 there was no number, which reads as 0
+OLD_SETTING, NEW_SETTING = "make_centres", "make_centers"  # the one that has another name since
+OLD_ROLES = {"centres": "centers", "voronoi centres": "voronoi centers"}
 
 
 def _own_objects() -> list[bpy.types.Object]:
@@ -37,8 +41,12 @@ def settle(*_: Any) -> None:
             first_layer(item)
         if item.saddleback.layout_number != 0:
             continue
+        for output in outputs_of(item):
+            output[ROLE] = OLD_ROLES.get(output[ROLE], output[ROLE])
         for settings_name, begin in BEGIN.items():
             group = existing_group(item, settings_name)
+            if group is not None and OLD_SETTING in group:
+                setattr(group, NEW_SETTING, bool(group.pop(OLD_SETTING)))
             for name in begin:
                 if group is not None and not group.is_property_set(name):
                     setattr(group, name, PROPERTIES[settings_name][name].keywords["default"])
