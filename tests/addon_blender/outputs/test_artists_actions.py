@@ -220,3 +220,19 @@ def test_each_field_of_a_mesh_has_its_own_symmetry():
     np.testing.assert_array_equal(positions(find_output(item, "shapes").data), before)
     bpy.ops.saddleback.clear()
     assert not list(item.data.keys())
+
+
+def test_a_duplicate_keeps_to_its_own_outputs_when_the_original_goes():
+    item = sphere(subdivisions=2)
+    bpy.ops.saddleback.tessellate(count=9, make_cells=True)
+    for output in item.children:
+        output.select_set(True)
+    bpy.ops.object.duplicate()
+    (copy,) = (one for one in bpy.context.selected_objects if one.parent is None)
+    left = [bpy.data.objects[name] for name in ("Sphere Cells", "Sphere Edges")]
+    bpy.data.objects.remove(item)
+    activate(copy)
+    bpy.ops.saddleback.tessellate(count=20, make_cells=True)
+    assert [output.parent for output in left] == [None, None]
+    bpy.ops.saddleback.clear()
+    assert set(bpy.data.objects) == {copy, *left}

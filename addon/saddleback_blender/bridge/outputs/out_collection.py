@@ -172,7 +172,7 @@ def _all_of(source: bpy.types.Object) -> list[bpy.types.Object]:
         is_ours = item.get(SOURCE) == token and ROLE in item and item.library is None and item != source
         if is_ours and (item.parent is None or item.parent == source or token_of(item.parent) != token):
             by_role.setdefault((str(item[ROLE]), str(item.get(LAYER, ""))), []).append(item)
-    return [_original(candidates) for candidates in by_role.values()]
+    return [_original(source, candidates) for candidates in by_role.values()]
 
 
 def find_output(source: bpy.types.Object, role: str) -> bpy.types.Object | None:
@@ -290,8 +290,9 @@ def _remove(item: bpy.types.Object) -> None:
         bpy.data.actions.remove(action)
 
 
-def _original(candidates: list[bpy.types.Object]) -> bpy.types.Object:
-    return min(candidates, key=lambda item: (item.name != item.get(NAME), item.name))
+def _original(source: bpy.types.Object, candidates: list[bpy.types.Object]) -> bpy.types.Object:
+    """A child comes first: others may be of a duplicate of the source that was deleted."""
+    return min(candidates, key=lambda item: (item.parent != source, item.name != item.get(NAME), item.name))
 
 
 def _object_type(data: bpy.types.ID) -> str:
