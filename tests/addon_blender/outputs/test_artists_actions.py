@@ -236,3 +236,24 @@ def test_a_duplicate_keeps_to_its_own_outputs_when_the_original_goes():
     assert [output.parent for output in left] == [None, None]
     bpy.ops.saddleback.clear()
     assert set(bpy.data.objects) == {copy, *left}
+
+
+def test_linked_duplicates_and_empty_slots_have_a_ground_too():
+    """The slot that the first of them got was taken for a material of the others."""
+    one = sphere(subdivisions=2)
+    other = bpy.data.objects.new("Other", one.data)
+    bpy.context.scene.collection.objects.link(other)
+    for item in (one, other):
+        activate(item)
+        bpy.ops.saddleback.apply_look(look="PANELS")
+        assert item.material_slots[0].material.name == "Saddleback Panels Ground"
+    for item in (one, other):
+        activate(item)
+        bpy.ops.saddleback.clear()
+        assert tuple(item.color) == (1.0, 1.0, 1.0, 1.0)
+    assert not one.data.materials and not bpy.data.materials
+    one.data.materials.append(None)
+    bpy.ops.saddleback.apply_look(look="PANELS")
+    assert other.material_slots[0].material.name == "Saddleback Panels Ground"
+    bpy.ops.saddleback.clear()
+    assert other.material_slots[0].link == "DATA" and not bpy.data.materials

@@ -74,11 +74,13 @@ def _ramp_colors(distances: Reals, farthest: float) -> Reals:
 def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
     """Shows a material on an object that has none, in place of what was shown so before."""
     hide_preview(item, GROUND)
-    if not len(item.material_slots):
+    if not any(slot.material for slot in item.material_slots):
         _remember(item)
-        item.data.materials.append(None)
-        item[ADDED_SLOT] = True
-        item.material_slots[0].link, item.material_slots[0].material = "OBJECT", material
+        if not len(item.material_slots):
+            item.data.materials.append(None)
+            item[ADDED_SLOT] = True
+        for slot in item.material_slots:
+            slot.link, slot.material = "OBJECT", material
         if tuple(item.color) == NO_COLOR:  # which Solid view shows where it shows attributes
             rollback.remember(item, "color")
             item.color = material.diffuse_color
