@@ -77,6 +77,7 @@ class PathMaker {
         nearby_(nearby),
         stage_(stage),
         shorten_(shorten),
+        sight_(graph.is_exact()),
         unfolder_(graph.unfolding(), shorten),
         shortener_(graph.unfolding()) {}
 

@@ -35,7 +35,7 @@ bool is_in_needle(const Mesh& mesh, const SurfacePoint& point) {
 double straight_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const SurfacePoint& b, double bird,
                        double most, double upper) {
   constexpr double k_growth = 4, k_least = 1e-6;
-  LineOfSight sight;
+  LineOfSight sight(graph.is_exact());
   for (double bound = std::max(bird * k_growth, most * k_least);; bound *= k_growth) {
     bound = std::min(bound, most);
     const double length = sight.length(graph.unfolding(), a, b, bound);

@@ -37,7 +37,7 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
   }
   const Vec3 goal = position(mesh, target);
   set_out(mesh, source);
-  for (int windows = 0; !stack_.empty() && windows < k_most_windows; ++windows) {
+  for (int windows = 0; !stack_.empty() && windows < most_windows_; ++windows) {
     const Window window = stack_.back();
     stack_.pop_back();
     const Index h = window.entered;

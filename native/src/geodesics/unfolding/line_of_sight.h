@@ -13,9 +13,12 @@ namespace saddleback {
 /// no longer than the bound can cross. Holds its scratch memory; one a thread.
 class LineOfSight {
  public:
+  /// `is_exact`: whether little may be given up. Along thin tubes, whose far ends are near each other in space,
+  /// a bound leaves many windows.
+  explicit LineOfSight(bool is_exact) : most_windows_(is_exact ? 100'000 : 10'000) {}
   /// Length of the shortest straight geodesic between two points inside faces or on edges, if it is less than `upper`;
   /// else `upper`. Equal to the bit from both ends: it is always sought from the point that comes first (face, then
-  /// coordinates). O(faces within the ellipse about both), given up after k_most_windows.
+  /// coordinates). O(faces within the ellipse about both), given up after a number of windows.
   double length(const Unfolding& unfolding, const SurfacePoint& a, const SurfacePoint& b, double upper);
   /// The half-edges that the last geodesic found crosses, from a to b, each of the face that is entered; none when the
   /// points share a face.
@@ -29,12 +32,12 @@ class LineOfSight {
     Vec2 from, to;
     Vec2 right, left;  ///< left is counter-clockwise of right
   };
-  static constexpr int k_most_windows = 10000;
 
   void set_out(const Mesh& mesh, const SurfacePoint& point);
   void push(const Mesh& mesh, Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right,
             const Vec2& left);
 
+  int most_windows_;
   std::vector<Window> stack_;
   std::vector<Index> trail_, entered_;
 };
