@@ -2,6 +2,7 @@
 // The local geodesic near a chain of straight pieces.
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -43,9 +44,10 @@ class PathShortener {
 
  private:
   friend class LoopShortener;
-  // Of a path at a vertex, in radians below pi; the least one is straight but for rounding. Sharp bends first are fewer
-  // steps than bends in their order: half the time on scans.
-  static constexpr double k_sharp_bend = 2, k_next_bend = 0.5, k_least_bend = 0x1p-33;
+  // Of a path at a vertex, in radians below pi, as powers of two; the least one is straight but for rounding. Sharp
+  // bends first are fewer steps than bends in their order: half the time on scans.
+  static constexpr int k_sharpest = 1, k_straightest = -33;
+  static constexpr double k_least_bend = 0x1p-33;
   enum class Side { none, left, right };
   /// Two pieces and what they join.
   struct Joint {
@@ -81,7 +83,8 @@ template <class Check>
 void PathShortener::shorten(LegChain& chain, Check&& check) {
   std::size_t steps = k_steps_per_vertex * (chain.leg_count + static_cast<std::size_t>(mesh_.vertex_count()));
   do {
-    for (double bend = k_sharp_bend; bend >= k_least_bend; bend *= k_next_bend) {
+    for (int power = k_sharpest; power >= k_straightest; --power) {
+      const double bend = std::ldexp(1.0, power);
       for (std::size_t i = 1; i < chain.leg_count && steps > 0;) {
         check();
         if (!step(chain, i, bend)) {
