@@ -15,8 +15,6 @@ from tests.truth.surfaces import are_fat, elsewhere
 Floats = NDArray[np.float64]
 Random = np.random.Generator
 
-OF_PARTS = "parts run out where sites are as near over wide areas, or two ways to one are"
-
 
 def exact_cells(mesh: sb.Mesh, sites: sb.SurfacePoints) -> sb.GeodesicVoronoi:
     return sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True)
@@ -76,7 +74,7 @@ def lag_at_borders(mesh: sb.Mesh, cells: sb.GeodesicVoronoi) -> float:
     return float(lags.max(initial=0))
 
 
-@guards("geodesic_voronoi", unsettled=OF_PARTS)
+@guards("geodesic_voronoi")
 def check_cells_without_places(mesh: sb.Mesh, rng: Random) -> None:
     """Exact cells of a surface elsewhere against those of the surface itself, and their borders against its fields."""
     if not are_fat(mesh):
@@ -93,7 +91,7 @@ def check_cells_without_places(mesh: sb.Mesh, rng: Random) -> None:
         np.testing.assert_allclose(there.areas, here.areas, rtol=0, atol=1e-5 * mesh.area)
 
 
-@guards("geodesic_voronoi", unsettled=OF_PARTS)
+@guards("geodesic_voronoi", unsettled="parts run out where sites are as near over wide areas, or two ways to one are")
 def check_borders_are_nearest(mesh: sb.Mesh, rng: Random) -> None:
     """To no point of a border is another site nearer by more than 1e-5 of the size of a cell, by exact distances."""
     sites = random_sites(mesh, rng)

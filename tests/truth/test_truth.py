@@ -46,6 +46,8 @@ def test_random_input_meets_the_truths():
         ("cells_exact.check_dual_edges_are_ways", 8006),  # by a corner of the boundary, straight over nothing
         ("cells.exact_cells_of_places", 1000000149555),  # a spike of needles: three gigabytes of windows went round it
         ("cells_exact.check_borders_are_nearest", 612),  # straight on at a corner, another way beside it
+        ("disks.inset_disks", 1000020335261),  # a twin hidden by a weight as large as their distance
+        ("surfaces.graphs_without_places", 1000020262499),  # far ends of thin tubes, near each other in space
         ("cells.cells_of_few_sites", 123091566),  # told in single precision to be as near as another way
         ("lines_and_maps.lines_along_fields", 20626990),  # ended at a singularity past its length
         ("shapes.innocent_shapes", 123100773),  # an edge 1e-5 long, seen along

@@ -244,12 +244,7 @@ def distances_to_line(points: Floats, line: Floats) -> Floats:
     return found
 
 
-@guards(
-    "curve_through",
-    "bezier_curve",
-    "SurfaceCurve",
-    unsettled="ways that are as long but for rounding are up to 2e-8 of their length to the side (1000020372493)",
-)
+@guards("curve_through", "bezier_curve", "SurfaceCurve")
 def drawn_curves(mesh: sb.Mesh, rng: Random) -> None:
     """Curves meet their points, are as long as the ways between them, and are those of the plane where that is flat."""
     if not is_shapely(mesh):
