@@ -39,6 +39,9 @@ constexpr double k_least_surplus = 1e-3;
 // takes ten seconds and a gigabyte.
 constexpr double k_triangles_per_radius = 125, k_most_triangles = 1e6;
 constexpr double k_printed = 1e-8;  // what messages round numbers by, at most
+// Corrections of coordinates, as a share of the length, that are rounding; and how many are made at most.
+constexpr double k_refined = 1e-14;
+constexpr int k_most_refinements = 5;
 // A band is long from so many times its width on one side on.
 constexpr double k_long = 16;
 // As a share of the length: nearest points this near to an end of the curve are that end.
@@ -170,8 +173,24 @@ void solve_along(const Sheet& sheet, const PartedSheet& parted, const SweptSide&
   std::vector<Index> order = dissection_order(matrix, places);
   stage.check();
   const SparseCholesky factors(matrix, std::move(order), stage);
-  const std::vector<Vec2> solution = factors.solve(right);
-  for (std::size_t i = 0; i < unknowns.size(); ++i) along[vertices[unknowns[i]]] = solution[i].x();
+  std::vector<Vec2> correction = factors.solve(right);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) along[vertices[unknowns[i]]] = correction[i].x();
+  // Beside needles, whose weights are as large as they are thin, what hangs on a narrow neck would fold by rounding.
+  // What flows through the edges, from differences, tells how far off it is.
+  for (int round = 0; round < k_most_refinements; ++round) {
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
+      stage.check();
+      const Index i = unknowns[k];
+      right[k].x() = 0;
+      for (const auto& [number, weight] : weights.row(i))
+        right[k].x() += weight * (along[vertices[number]] - along[vertices[i]]);
+    }
+    correction = factors.solve(right);
+    double most = 0;
+    for (const Vec2& c : correction) most = std::max(most, std::abs(c.x()));
+    if (most <= k_refined * std::abs(at_end - at_start)) break;
+    for (std::size_t i = 0; i < unknowns.size(); ++i) along[vertices[unknowns[i]]] += correction[i].x();
+  }
 }
 
 /// The lines about a side, as the curve goes or, for its right side, against it.
