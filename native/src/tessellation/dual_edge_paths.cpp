@@ -1,9 +1,10 @@
 // A dual edge is the geodesic from site to site through the boundary between their cells. In the face of one of the
 // boundary's straight bits the two sites have mirror images, as the bit's ends' distances say; that gives the direction
-// at one site, and straightest geodesics from there are aimed until one meets the other site.
+// at one site, and straightest geodesics from there are aimed until one meets the other site; else from that one.
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -27,6 +28,7 @@ constexpr int k_most_shots = 20;
 struct Crossing {
   SurfacePoint point;
   double distance = 0, angle = 0;
+  double angle_of_right = 0;    ///< the direction of the right one
   double height = 0, turn = 0;  ///< of the left site above the boundary's bit; from the crossing to the image beyond it
   bool is_aimed = false;        ///< some bit is long enough to tell a direction
 };
@@ -49,10 +51,12 @@ Crossing crossing_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyl
     const double on_bit = std::clamp(foot, 0.0, length);
     const double height = std::sqrt(std::max(0.0, from_a * from_a - foot * foot));
     const Vec2 to_site = (foot - on_bit) * along + height * to_left;
+    const Vec2 to_right = (foot - on_bit) * along - height * to_left;
     if (best.is_aimed && to_site.norm() >= best.distance) continue;
     best = {.point = {face, normalized_barycentric(chart.to_barycentric(begin + on_bit * along))},
             .distance = to_site.norm(),
             .angle = std::atan2(to_site.y(), to_site.x()),
+            .angle_of_right = std::atan2(to_right.y(), to_right.x()),
             .height = height,
             .turn = std::atan2(foot - on_bit, height),
             .is_aimed = true};
@@ -122,38 +126,55 @@ GeodesicPath over_crossing(const SaddleVertexGraph& graph, const SurfacePoint& l
   return measured(graph.mesh(), std::move(path));
 }
 
+enum class Straight : std::uint8_t { none, to_right, to_left };
+
 /// A dual edge: the straightest geodesic from site to site, or over the boundary where none is found.
 struct Across {
   Crossing crossing;
-  bool is_straight;
-  SurfacePoint left;  ///< the left site, where it is straight in the face into which that leaves
+  Straight straight;
+  SurfacePoint from;  ///< the site that it was aimed from, in the face into which it leaves
   double angle, length;
 };
+
+/// A straightest geodesic that leaves a point in a face that it lies in.
+struct Way {
+  SurfacePoint from;
+  double angle, length;
+};
+
+/// Aims a geodesic through the crossing from one of its sites at the other, from a site that lies in the direction
+/// `aside` of the crossing's face; none where no geodesic near the first aims meets both.
+std::optional<Way> way_through(const Mesh& mesh, const Crossing& crossing, const SurfacePoint& from,
+                               const SurfacePoint& to, double aside, double turn) {
+  double back = aside, half = crossing.distance;
+  if (!aim(mesh, crossing.point, from, back, half)) return {};
+  const TraceEnd at_from = trace_end(mesh, crossing.point, back, half);
+  const std::optional<Vec3> place = barycentric_in(mesh, from, at_from.point.face);
+  if (!place) return {};
+  // Straight to the other site's image, which passes beside a short boundary; else over the crossing.
+  Way way{{at_from.point.face, *place}, at_from.angle + std::numbers::pi + turn, 2 * crossing.height};
+  if (way.length > 0 && aim(mesh, way.from, to, way.angle, way.length)) return way;
+  if (turn == 0) return {};
+  way.angle = at_from.angle + std::numbers::pi;
+  way.length = 2 * half;
+  return aim(mesh, way.from, to, way.angle, way.length) ? std::optional(way) : std::nullopt;
+}
 
 Across look_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
   const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
                      &right = cells.sites[cells.edge_cells[polyline][1]];
   const Crossing crossing = crossing_of(mesh, cells, polyline);
   const double chord = mesh.bird((position(mesh, left) - position(mesh, right)).norm());
-  Across across{crossing, false, left, 0, std::max(2 * crossing.distance, chord)};
-  double back = crossing.angle, half = crossing.distance;
-  if (!crossing.is_aimed || vertex_at(mesh, crossing.point) != k_none || !aim(mesh, crossing.point, left, back, half))
-    return across;
-  const TraceEnd at_left = trace_end(mesh, crossing.point, back, half);
-  const std::optional<Vec3> place = barycentric_in(mesh, left, at_left.point.face);
-  if (!place) return across;
-  const SurfacePoint from{at_left.point.face, *place};
-  // Straight to the right site's image, which passes beside a short boundary; else over the crossing.
-  double angle = at_left.angle + std::numbers::pi + crossing.turn, length = 2 * crossing.height;
-  bool is_met = length > 0 && aim(mesh, from, right, angle, length);
-  if (!is_met && crossing.turn != 0) {
-    angle = at_left.angle + std::numbers::pi;
-    length = 2 * half;
-    is_met = aim(mesh, from, right, angle, length);
-  }
+  Across across{crossing, Straight::none, left, 0, std::max(2 * crossing.distance, chord)};
+  if (!crossing.is_aimed || vertex_at(mesh, crossing.point) != k_none) return across;
   // A straightest way round the wrong side of a vertex is not the shortest.
-  if (!is_met || length > across.length * (1 + k_hit)) return across;
-  return {crossing, true, from, angle, length};
+  const double most = across.length * (1 + k_hit);
+  std::optional<Way> way = way_through(mesh, crossing, left, right, crossing.angle, crossing.turn);
+  if (way && way->length <= most) return {crossing, Straight::to_right, way->from, way->angle, way->length};
+  // The right site is the left one's image at the bit: where vertices part the ways about a first aim, the other meets.
+  way = way_through(mesh, crossing, right, left, crossing.angle_of_right, -crossing.turn);
+  if (way && way->length <= most) return {crossing, Straight::to_left, way->from, way->angle, way->length};
+  return across;
 }
 
 GeodesicPath path_across(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, Index polyline) {
@@ -161,13 +182,15 @@ GeodesicPath path_across(const SaddleVertexGraph& graph, const GeodesicVoronoi& 
   const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
                      &right = cells.sites[cells.edge_cells[polyline][1]];
   const Across across = look_across(mesh, cells, polyline);
-  if (across.is_straight) {
-    GeodesicPath path = trace(mesh, across.left, across.angle, across.length).path;
+  if (across.straight != Straight::none) {
+    const bool is_to_left = across.straight == Straight::to_left;
+    const SurfacePoint& end = is_to_left ? left : right;
+    GeodesicPath path = trace(mesh, across.from, across.angle, across.length).path;
     const std::size_t last = path.surface.size() - 1;
-    if (last > 0 && shared_face(mesh, path.surface[last - 1], right) != k_none) {
-      path.surface[last] = right;
-      path.points[last] = position(mesh, right);
-      return measured(mesh, std::move(path));
+    if (last > 0 && shared_face(mesh, path.surface[last - 1], end) != k_none) {
+      path.surface[last] = end;
+      path.points[last] = position(mesh, end);
+      return measured(mesh, is_to_left ? reversed(std::move(path)) : std::move(path));
     }
   }
   return over_crossing(graph, left, across.crossing.point, right);

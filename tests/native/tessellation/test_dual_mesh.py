@@ -220,6 +220,23 @@ def test_dual_edges_are_as_long_as_ways_on_the_surface(arrays: meshes.Arrays, se
         assert distance * (1 - 1e-4) <= length <= over * (1 + 1e-4)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_dual_edges_are_the_same_from_either_side(seed: int) -> None:
+    """With all faces turned over left and right change places: whichever site is aimed from, the other is met."""
+    vertices, triangles = meshes.torus(36, 15)
+    vertices *= 1 + 0.04 * np.random.default_rng(1).random((len(vertices), 1))
+    mesh, over = sb.Mesh(vertices, triangles), sb.Mesh(vertices, triangles[:, [0, 2, 1]])
+    sites = sb.sample(mesh, 20, seed=seed)
+    turned = sb.SurfacePoints(sites.faces, sites.barycentric[:, [0, 2, 1]])
+    lengths, ways = [], []
+    for there, points in ((mesh, sites), (over, turned)):
+        cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(there), points, exact=True)
+        lengths.append(np.sort(cells.dual("strict").edge_lengths))
+        ways.append(np.sort([path.length for path in cells.dual_paths()]))
+    np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-3)
+    np.testing.assert_allclose(ways[0], ways[1], rtol=1e-3)
+
+
 def strip(width: float) -> sb.Mesh:
     vertices, triangles = meshes.grid(20, 3)
     return sb.Mesh(vertices * (19.0, 2 * width, 1.0), triangles)
