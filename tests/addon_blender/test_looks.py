@@ -410,6 +410,45 @@ def test_scales_leave_no_skin_bare_and_meet_only_where_they_overlap(look, make):
         assert passing_pairs(find_output(item, "shapes")) > 100  # so the count can fail
 
 
+def strip():
+    item = grid(n=40)
+    for vertex in item.data.vertices:
+        vertex.co.y *= 0.12
+    return item
+
+
+def monkey():
+    bpy.ops.mesh.primitive_monkey_add()
+    return bpy.context.active_object
+
+
+@pytest.mark.parametrize("make", [strip, monkey])
+def test_small_scales_lie_where_skin_would_be_bare(make):
+    """Along borders and where sharp edges have others drawn smaller."""
+    item = make()
+    apply("SCALES")
+    shown = find_output(item, "shapes")
+    assert bare_share(item, shown) < 0.02 and not passing_pairs(shown)
+    assert "small shapes lie where skin would be bare" in jobs.state.figures[-1]
+
+
+def test_small_scales_of_both_sides_are_twins():
+    item = monkey()
+    item.saddleback.mirror_x = True
+    apply("SCALES")
+    mesh = find_output(item, "shapes").data
+    number, random = (
+        np.array([face.value for face in mesh.attributes[f"saddleback_{name}"].data]) for name in ("shape", "random")
+    )
+    numbers, first = np.unique(number, return_index=True)
+    middle = np.array([face.center for face in mesh.polygons])[first]
+    count = int(jobs.state.line.split(" shapes")[0].split()[-1].replace(",", ""))
+    fillers = numbers >= 2 * count
+    assert np.count_nonzero(fillers) > 100
+    left, right = middle[fillers, 0] < 0, middle[fillers, 0] > 0
+    assert np.sort(random[first][fillers][left]) == pytest.approx(np.sort(random[first][fillers][right]))
+
+
 def test_a_tip_stands_higher_than_a_root_by_the_tilt():
     item = grid(n=20)
     tilt = np.radians(20.0)

@@ -19,6 +19,7 @@ from .distribute_texts import (
     MOST_FAULTS,
     fault,
     figures,
+    filled,
     left_out,
     made_smaller,
     no_room,
@@ -102,7 +103,8 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         )
     progress.check()
     placements = result.placements
-    points, rotations, scales = frames = drawn.frames()
+    frames = tuple(values[: len(placements)] for values in drawn.frames())
+    points, rotations, scales = frames
     if templates is not laid.templates:
         points, rotations, scales = tilted_frames(templates, placements.shape, frames, settings.tilt)
     counts = np.bincount(placements.shape, minlength=len(laid.templates)).astype(np.int32)
@@ -121,8 +123,8 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         vertex_count=surface.vertex_count,
         class_counts=counts,
         text=told(laid, counts, settings),
-        lines=(*figures(laid, settings.maximal), *made_smaller(whole.smaller)),
-        warnings=(*laid.warnings, *warnings_of(laid, mapped, settings), *left_out(len(whole.left_out))),
+        lines=(*figures(laid, settings.maximal), *made_smaller(whole.smaller), *filled(whole.fillers)),
+        warnings=(*laid.warnings, *warnings_of(laid, mapped, settings), *left_out(whole.missing)),
         bent=bent,
         bent_anchors=bent_anchors,
         outlines=outlines,
@@ -258,8 +260,10 @@ def _drawn(
     overlap = _overlap(settings, laid.templates)
     if overlap == 0.0:
         return Whole(mapped), laid.templates
-    clears = settings.no_crossings
-    templates = [tilted(template, settings.tilt, THIN if clears else ROUND) for template in laid.templates]
+    clears, fills = settings.no_crossings and settings.make_bent, settings.fill_gaps
+    templates = [
+        tilted(template, settings.tilt, THIN if settings.no_crossings else ROUND) for template in laid.templates
+    ]
     shapes = [native.load().Shape(*[list(part) for part in template.parts]) for template in laid.templates]
     solids = [template.solid for template in templates]
     order = Order(laid.mesh, shapes, solids, laid.result.placements, laid.result.field, settings.fit, request.threads)
@@ -269,11 +273,11 @@ def _drawn(
     def lay() -> Whole:
         nonlocal bent
         with progress.stage(0.9, "laying shapes over each other") as job:
-            whole = map_whole(order, overlap, clears and settings.make_bent, job)
+            whole = map_whole(order, overlap, clears, fills, job)
         bent = whole.bent
         return replace(whole, bent=None)
 
-    drawn = content_of([settings.fit, clears and settings.make_bent, [solid.vertices for solid in solids if solid]])
+    drawn = content_of([settings.fit, clears, fills, [solid.vertices for solid in solids if solid]])
     key = ("overlapping shapes", *laid.key, drawn)
     whole = cache.get(key, lay, lambda found: BYTES_PER_SHAPE * len(found.mapped))
     return replace(whole, bent=bent), templates

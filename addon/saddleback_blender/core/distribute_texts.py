@@ -97,6 +97,12 @@ def made_smaller(count: int) -> tuple[str, ...]:
     return (f"{are} drawn smaller, not to pass through others",) if count else ()
 
 
+def filled(count: int) -> tuple[str, ...]:
+    """Tells how many small shapes lie in gaps, if any."""
+    lie = "1 small shape lies" if count == 1 else f"{count:,} small shapes lie"
+    return (f"{lie} where skin would be bare",) if count else ()
+
+
 def left_out(count: int) -> tuple[str, ...]:
     """Warns of shapes that would pass through others however small they were, if any."""
     are = "1 shape is" if count == 1 else f"{count:,} shapes are"

@@ -278,6 +278,10 @@ def _bent(bent: BentCopies, mirror: Mirror, count: int) -> BentCopies:
     first = np.repeat(bent.offsets[:-1], lengths)
     last = np.repeat(bent.offsets[1:], lengths) - 1
     back = first + last - np.arange(len(bent.corners))
+    # Those that fill gaps come behind all that were laid on both sides.
+    copy, fillers = bent.polygon_copy, max(0, int(bent.polygon_copy.max(initial=-1)) + 1 - count)
+    is_filler = copy >= count
+    own, other = copy + np.where(is_filler, count, 0), copy + np.where(is_filler, count + fillers, count)
     return BentCopies(
         vertices=np.concatenate([vertices, others]),
         faces=np.tile(bent.faces, 2),
@@ -287,7 +291,7 @@ def _bent(bent: BentCopies, mirror: Mirror, count: int) -> BentCopies:
         uv=np.concatenate([bent.uv, bent.uv[back]]),
         smooth=np.tile(bent.smooth, 2),
         material=np.tile(bent.material, 2),
-        polygon_copy=np.concatenate([bent.polygon_copy, bent.polygon_copy + np.int32(count)]),
+        polygon_copy=np.concatenate([own, other]).astype(np.int32),
         polygon_shape=np.tile(bent.polygon_shape, 2),
     )
 

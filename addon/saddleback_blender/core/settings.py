@@ -302,6 +302,7 @@ class DistributeSettings(DensitySettings, PatternSettings):
     overlap: float = 0.0  # share of their length by which shapes reach over those before them
     tilt: float = math.radians(14.0)  # of shapes that overlap: how steeply they rise to their tips
     no_crossings: bool = False  # shapes that overlap are drawn so that none passes through another
+    fill_gaps: bool = False  # small copies where these leave skin bare
     packing: float = 1.0  # 0 = by chance, 1 = side by side
     maximal: bool = False  # go on until nothing more fits, whatever the count
     mirror: bool = False  # half of them

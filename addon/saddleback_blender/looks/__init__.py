@@ -72,7 +72,7 @@ LOOKS: dict[str, Look] = {
         "distribute",
         {
             "shapes": "SCALES", "count": 1000, "overlap": 0.73, "tilt": math.radians(14.0), "no_crossings": True,
-            "fit": 0.04,
+            "fill_gaps": True, "fit": 0.04,
         },
         Finish("Scales", ("#2a6d5c", "#1f5a4e", "#3b8266", "#184741", "#57926a"), 0.3, coat=0.5),
         ground="#12302a",

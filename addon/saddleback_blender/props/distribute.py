@@ -66,6 +66,9 @@ DISTRIBUTE: dict[str, Any] = {
         "No Crossings", "Draw shapes that overlap flatter and narrower, and smaller where they would still "
         "pass through others", False,
     ),
+    "fill_gaps": switch(
+        "Fill Gaps", "Lay small copies where shapes that overlap without crossings leave skin bare", False
+    ),
     "packing": FloatProperty(
         name="Packing", description="0 scatters shapes by chance, 1 lays them side by side, which makes room for more",
         default=1.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},

@@ -375,6 +375,9 @@ def draw_shapes_advanced(layout: bpy.types.UILayout, settings: Any, item: bpy.ty
     row = layout.row()
     row.active = settings.overlap > 0.0
     row.prop(settings, "no_crossings")
+    row = layout.row()
+    row.active = settings.overlap > 0.0 and settings.no_crossings and settings.make_bent
+    row.prop(settings, "fill_gaps")
     layout.prop(settings, "maximal")
     layout.prop(settings, "mirror")
     layout.prop(settings, "bend")

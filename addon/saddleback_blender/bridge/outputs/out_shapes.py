@@ -61,7 +61,7 @@ def write_bent(
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
     fill(mesh, bent.vertices, bent.corners, bent.offsets, bent.uv, bent.smooth)
-    random = random_numbers(result, settings.seed)
+    random = random_numbers(result, settings.seed, int(bent.polygon_copy.max(initial=-1)) + 1)
     set_attribute(mesh, SHAPE_ATTRIBUTE, "FACE", bent.polygon_copy)
     set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
     set_attribute(mesh, RANDOM_ATTRIBUTE, "FACE", random[bent.polygon_copy])
@@ -256,10 +256,15 @@ def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
     fill(mesh, vertices, corners, offsets, template.uv_of(flat), np.zeros(len(loops), bool))
 
 
-def random_numbers(result: DistributeResult, seed: int) -> Reals:
-    """(n,) a number of each shape, 0 to 1; a mirrored one has its twin's."""
+def random_numbers(result: DistributeResult, seed: int, all_of: int = 0) -> Reals:
+    """(n,) a number of each shape, 0 to 1; a mirrored one has its twin's. `all_of`: with those that fill gaps."""
     count = len(result.placed.shape)
-    return random_of(count, seed) if result.twin is None else random_of(count // 2, seed)[result.twin]
+    fillers = max(0, all_of - count)
+    if result.twin is None:
+        return random_of(count + fillers, seed)
+    half = count // 2 + np.arange(fillers // 2)
+    found: Reals = random_of(len(half) + count // 2, seed)[np.concatenate([result.twin, half, half])]
+    return found
 
 
 def _colors(classes: Indices, random: Reals, look: str) -> Reals:

@@ -52,6 +52,20 @@ class Bent:
             first += len(part)
         return found
 
+    def joined(self, other: Bent) -> Bent:
+        """With the copies of another behind."""
+
+        def both(name: str, shift: int = 0) -> Any:
+            own, others = getattr(self, name), getattr(other, name)
+            return np.concatenate([own, others + own.dtype.type(shift)])
+
+        count = len(self.vertices)
+        return Bent(
+            both("vertices"), both("faces"), both("barycentric"), both("begins", count), both("ends", count),
+            both("triangles", count), both("triangle_copy", len(self.begins)), both("triangle_source"),
+            (*self.weights, *other.weights), both("row", sum(map(len, self.weights))),
+        )  # fmt: skip
+
     def with_again(self, again: Sequence[tuple[Bent, NDArray[np.int64]]]) -> Bent:
         """With copies that were bent `again`, and whose those are, in the place of what they were before."""
         tries = [(self, np.arange(len(self.begins))), *again]

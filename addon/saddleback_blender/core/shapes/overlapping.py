@@ -3,7 +3,8 @@
 
 A footprint is the shape made shorter along the field, and a hair narrower, so that the tips of those behind reach over
 it. Shapes side by side rise alike: what they share of their sides they would pass through, so they share hardly any.
-Where shapes still pass through each other, since the surface bends or the field turns, one of them is drawn smaller.
+Where shapes still pass through each other, since the surface bends or the field turns, one of them is drawn smaller,
+and small ones fill the gaps.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..results import Indices, Reals
 from ..solids.crossings import find_crossings
 from ..surfaces.quaternions import quaternions_of, turned
 from .bent_copies import Bent, border, triangulated
+from .filling import SIZES, Gaps
 from .shape_templates import Parts, ShapeTemplate, Solid
 
 
@@ -35,6 +37,7 @@ SHRINK = 0.85  # a shape that the surface bends too much for is drawn smaller by
 CLEARER = 0.9  # one that passes through others by this
 GENTLY = 3  # so often; from then on by its square, its cube, ..., since next to nothing is left of most of them
 LEAST = 0.1  # of their size: smaller ones that still pass through others are left out
+LEAST_FILLER = 0.3  # of theirs: the next smaller ones are tried there
 
 
 def footprints(parts: Parts, overlap: float, slim: Slim) -> Parts:
@@ -107,21 +110,41 @@ class Order:
 
 @dataclass(frozen=True)
 class Whole:
-    """Whole shapes as mapped, and how many were drawn smaller, and were left out, to be clear of others."""
+    """Whole shapes as mapped: those that were laid, then those that fill gaps between them."""
 
     mapped: Any
-    smaller: int = 0
-    left_out: tuple[int, ...] = ()
+    smaller: int = 0  # drawn so, to be clear of others
+    missing: int = 0  # since no size was
+    fillers: int = 0
+    left_out: tuple[int, ...] = ()  # of all that were mapped
     bent: Bent | None = None  # where they had to be bent to be cleared
 
 
-def map_whole(order: Order, overlap: float, clears: bool, job: Any) -> Whole:
+def map_whole(order: Order, overlap: float, clears: bool, fills: bool, job: Any) -> Whole:
     """Maps the whole shapes where their footprints were laid, smaller where the surface bends too much for them.
 
     At (1 - overlap) of its size a shape lies within its footprint, which has found its place. Where it `clears` them,
-    no bent copy of one passes through that of another.
+    no bent copy of one passes through that of another; small ones then fill gaps, if wanted.
     """
-    everything, least = np.arange(len(order.placements)), 1.0 - overlap
+    factor, mapped = _laid_out(order, 1.0 - overlap, job)
+    if not clears:
+        return Whole(mapped)
+    clear, bent = _cleared(order, factor, order.bend(mapped, job), np.zeros(len(factor), bool), LEAST, 0, job)
+    is_out = clear < LEAST
+    smaller, missing = int(np.count_nonzero((clear < factor) & ~is_out)), int(np.count_nonzero(is_out))
+    if not fills:
+        mapped = order.map(clear, np.arange(len(clear)), job) if smaller or missing else mapped
+        return Whole(mapped, smaller, missing, 0, tuple(np.flatnonzero(is_out).tolist()), bent)
+    order, factor, is_out, bent = _filled(order, mapped, bent, clear, is_out, job)
+    if smaller or missing or len(factor) > len(clear):
+        mapped = order.map(factor, np.arange(len(factor)), job)
+    fillers = int(np.count_nonzero(~is_out[len(clear) :]))
+    return Whole(mapped, smaller, missing, fillers, tuple(np.flatnonzero(is_out).tolist()), bent)
+
+
+def _laid_out(order: Order, least: float, job: Any) -> tuple[Reals, Any]:
+    """(n,) factors, `least` or more, at which the surface does not bend too much, and the shapes as mapped."""
+    everything = np.arange(len(order.placements))
     factor = np.ones(len(everything))
     mapped, tried = order.map(factor, everything, job), everything
     failures = mapped.failures
@@ -130,42 +153,78 @@ def map_whole(order: Order, overlap: float, clears: bool, job: Any) -> Whole:
         failures = order.map(factor, tried, job).failures
     if (factor < 1.0).any():
         mapped = order.map(factor, everything, job)
-    if not clears:
-        return Whole(mapped)
-    clear, bent = _cleared(order, mapped, factor, job)
-    is_smaller, is_out = clear < factor, clear < LEAST
-    if is_smaller.any():
-        mapped = order.map(clear, everything, job)
-    return Whole(mapped, int(np.count_nonzero(is_smaller & ~is_out)), tuple(np.flatnonzero(is_out).tolist()), bent)
+    return factor, mapped
 
 
-def _cleared(order: Order, mapped: Any, factor: Reals, job: Any) -> tuple[Reals, Bent]:
-    """(n,) factors at which no copy passes through another, below LEAST it is to be left out; and the copies.
+def _filled(
+    order: Order, mapped: Any, bent: Bent, factor: Reals, is_out: NDArray[np.bool_], job: Any
+) -> tuple[Order, Reals, NDArray[np.bool_], Bent]:
+    """With small shapes behind where there was bare skin: what was laid, how large, which of them not, the copies."""
+    height = max(float(solid.vertices[:, 2].max()) for solid in order.solids if solid is not None)
+    gaps, known = Gaps(order.mesh, order.placements, mapped.frames(), height), 0
+    for share in SIZES:
+        is_new = (bent.triangle_copy >= known) & ~is_out[bent.triangle_copy]
+        gaps.look(bent.vertices, bent.triangles[is_new], job)
+        fillers = gaps.fillers(share)
+        if fillers is None:
+            break
+        own, found = _laid_out(replace(order, placements=fillers), LEAST_FILLER, job)
+        known, order = len(factor), replace(order, placements=_joined(order.placements, fillers))
+        is_out = np.append(is_out, np.isin(np.arange(len(fillers)), list(found.failures)))
+        copies = bent.joined(order.bend(found, job))
+        factor, bent = _cleared(order, np.append(factor, own), copies, is_out, LEAST_FILLER, known, job)
+        is_out[known:] |= factor[known:] < LEAST_FILLER
+    return order, factor, is_out, bent
 
-    Of each two that do, the one that meets more others, or else the larger, is made smaller. O(T log T) for all T
-    triangles once, then for those of the copies that change and of their neighbors.
+
+def _joined(first: Any, second: Any) -> Any:
+    """Placements, one after the other."""
+    sb, both = native.load(), (first, second)
+    center = sb.SurfacePoints(
+        *(np.concatenate([getattr(p.center, name) for p in both]) for name in ("faces", "barycentric"))
+    )
+    shape, angle, scale, mirrored = (
+        np.concatenate([getattr(p, name) for p in both]) for name in ("shape", "angle", "scale", "mirrored")
+    )
+    return sb.Placements(shape, center, angle, scale, mirrored)
+
+
+def _cleared(
+    order: Order, factor: Reals, first: Bent, is_out: NDArray[np.bool_], least: float, fixed: int, job: Any
+) -> tuple[Reals, Bent]:
+    """(n,) factors at which no copy passes through another, below `least` it is to be left out; and the copies.
+
+    Of each two that do, the one that meets more others, or else the larger, is made smaller; none of the `fixed` first.
+    Those that are out meet none. O(T log T) for all T triangles once, then for those of the copies that change and of
+    their neighbors.
     """
-    factor = factor.copy()
-    first, again = order.bend(mapped, job), []
-    points, triangles, owner = first.vertices, first.triangles, first.triangle_copy
+    factor, again = factor.copy(), []
+    is_there = ~is_out[first.triangle_copy]
+    points, triangles, owner = first.vertices, first.triangles[is_there], first.triangle_copy[is_there]
     middle = np.asarray(order.placements.center.positions(order.mesh))
     sizes = first.ends - first.begins
-    off = first.vertices - np.repeat(middle, sizes, axis=0)
-    reach, laid = np.zeros(len(factor)), sizes > 0
-    reach[laid] = np.sqrt(np.maximum.reduceat(np.einsum("ij,ij->i", off, off), first.begins[laid]))
-    pairs = _pairs(points, triangles, owner, None, job)
-    times = np.zeros(len(factor))
+    rows = np.concatenate([np.arange(begin, end) for begin, end in zip(first.begins, first.ends, strict=True)])
+    off = first.vertices[rows] - np.repeat(middle, sizes, axis=0)
+    reach, laid, begins = np.zeros(len(factor)), sizes > 0, np.cumsum(sizes) - sizes
+    reach[laid] = np.sqrt(np.maximum.reduceat(np.einsum("ij,ij->i", off, off), begins[laid]))
+    among = None
+    if fixed:
+        near = _near(middle, reach, np.arange(fixed, len(factor)))[owner]
+        triangles, owner = triangles[near], owner[near]
+        among = np.flatnonzero(owner >= fixed).astype(np.int32)
+    pairs = _pairs(points, triangles, owner, among, job)
+    times = np.full(len(factor), GENTLY if fixed else 0)  # of fillers, which need not be as large as they can
     while len(pairs):
-        chosen = _fewest(pairs, factor)
+        chosen = _fewest(pairs, factor, fixed)
         times[chosen] += 1
         smaller = factor[chosen] * CLEARER ** np.maximum(times[chosen] - GENTLY + 1, 1)
-        last = LEAST / CLEARER  # none is left out that was not tried at this
+        last = least / CLEARER  # none is left out that was not tried at this
         factor[chosen] = np.where(factor[chosen] > last, np.maximum(smaller, last), smaller)
         pairs = pairs[~np.isin(pairs, chosen).any(axis=1)]
         is_kept = np.ones(len(factor), bool)
         is_kept[chosen] = False
         triangles, owner = triangles[is_kept[owner]], owner[is_kept[owner]]
-        chosen = chosen[factor[chosen] >= LEAST]
+        chosen = chosen[factor[chosen] >= least]
         bent = order.bend(order.map(factor, chosen, job), job)
         again.append((bent, chosen))
         near = _near(middle, reach, chosen)[owner]
@@ -199,12 +258,14 @@ def _near(middle: Reals, reach: Reals, chosen: NDArray[np.int64]) -> NDArray[np.
     return near
 
 
-def _fewest(pairs: NDArray[np.int64], factor: Reals) -> NDArray[np.int64]:
-    """Some of those in pairs (k, 2), one of each pair at least: always the one in most pairs next, then the largest."""
+def _fewest(pairs: NDArray[np.int64], factor: Reals, fixed: int) -> NDArray[np.int64]:
+    """Some of those in pairs (k, 2), one of each pair at least: always the one in most pairs next, then the largest,
+    and never one of the `fixed` first, of which no two meet.
+    """
     found = []
     while len(pairs):
         number, count = np.unique(pairs, return_counts=True)
-        found.append(number[np.lexsort((-factor[number], -count))[0]])
+        found.append(number[np.lexsort((-factor[number], np.where(number < fixed, 0, -count)))[0]])
         pairs = pairs[(pairs != found[-1]).all(axis=1)]
     return np.sort(np.array(found, np.int64))
 
