@@ -33,7 +33,9 @@ class FaceBuckets {
   Index at(Index face, const Vec2& weights) const {
     const Index n = divisions(face);
     if (n == 1) return first_[face];
-    return first_[face] + place(weights.y(), n) * n + place(weights.x(), n);
+    // A point of the edge between corners 1 and 2 may be on a cell's corner, beyond which no cell is of the face.
+    const Index j = place(weights.y(), n), i = std::min(place(weights.x(), n), n - 1 - j);
+    return first_[face] + j * n + i;
   }
   /// Calls visit(bucket) for those that meet the box from low to high.
   template <class Visit>

@@ -38,11 +38,19 @@ PlacedShapes::PlacedShapes(const Mesh& mesh, const FlatFaces& flat, double least
       reach_(most),
       rings_(1 + std::clamp(static_cast<int>(std::ceil(std::log2(most / least) - 1e-9)), 0, k_most_rings - 1)),
       buckets_(mesh, least + most),
-      start_heads_(static_cast<std::size_t>(mesh.face_count()), k_none),
+      start_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
       piece_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
       place_heads_(static_cast<std::size_t>(buckets_.count()) * rings_, k_none) {
   // So that the list of blocks does not move while threads look at it.
   places_.reserve(static_cast<std::size_t>(std::numeric_limits<Index>::max() / k_block) + 1);
+}
+
+/// Narrows a box of weights to what of the face is that near to the origin; false when there is none. A face that is
+/// not divided is taken whole.
+bool PlacedShapes::is_reached(const FacePlace& place, double reach, Vec2& low, Vec2& high) const {
+  if (buckets_.divisions(place.face) == 1) return true;
+  const Vec2 e1 = place.turn * flat_->place(place.face, {1, 0}), e2 = place.turn * flat_->place(place.face, {0, 1});
+  return reached_box(place, e1, e2, reach, low, high);
 }
 
 bool PlacedShapes::is_free(const Copy& copy, const SurfaceOutline& outline, std::span<const FacePlace> faces) const {
@@ -77,11 +85,19 @@ bool PlacedShapes::is_within_another(const OutlinePiece& piece) const {
 
 /// Tells whether another copy lies within: it then begins in a face that the outline holds.
 bool PlacedShapes::holds_another(const Copy& copy, std::span<const FacePlace> faces) const {
-  for (const auto& [face, origin, turn] : faces)
-    for (Index i = start_heads_[face]; i != k_none; i = starts_[i].next) {
-      const Vec2 place = origin + turn * flat_->place(face, starts_[i].weights);
-      if (copy.body->shape.contains(place / copy.placement.scale)) return true;
-    }
+  const double reach = (1 + k_rounding) * copy.radius();
+  bool found = false;
+  for (const FacePlace& at : faces) {
+    Vec2 low = Vec2::Zero(), high = Vec2::Ones();
+    if (!is_reached(at, reach, low, high)) continue;
+    buckets_.visit(at.face, low, high, [&](Index bucket) {
+      for (Index i = start_heads_[bucket]; i != k_none && !found; i = starts_[i].next) {
+        const Vec2 place = at.origin + at.turn * flat_->place(at.face, starts_[i].weights);
+        found = place.norm() <= reach && copy.body->shape.contains(place / copy.placement.scale);
+      }
+    });
+    if (found) return true;
+  }
   return false;
 }
 
@@ -89,8 +105,9 @@ void PlacedShapes::add(const Copy& copy, const SurfaceOutline& outline) {
   copies_.push_back(copy);
   for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
     const OutlinePiece& piece = outline.pieces[outline.loop_begins[loop]];
-    starts_.push_back({piece.begin, start_heads_[piece.face]});
-    start_heads_[piece.face] = static_cast<Index>(starts_.size()) - 1;
+    Index& head = start_heads_[buckets_.at(piece.face, piece.begin)];
+    starts_.push_back({piece.begin, head});
+    head = static_cast<Index>(starts_.size()) - 1;
   }
   for (const OutlinePiece& piece : outline.pieces)
     buckets_.visit(piece.face, piece.begin.cwiseMin(piece.end), piece.begin.cwiseMax(piece.end), [&](Index bucket) {
@@ -106,7 +123,7 @@ void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places, 
   for (const FacePlace& place : places) {
     const Vec2 e1 = place.turn * flat_->place(place.face, {1, 0}), e2 = place.turn * flat_->place(place.face, {0, 1});
     Vec2 low = Vec2::Zero(), high = Vec2::Ones();
-    if (buckets_.divisions(place.face) > 1 && !reached_box(place, e1, e2, radius + reach_, low, high)) continue;
+    if (!is_reached(place, radius + reach_, low, high)) continue;
     buckets_.visit_cells(place.face, low, high, [&](Index bucket, const Vec2& middle, double share) {
       const double away = (place.origin + middle.x() * e1 + middle.y() * e2).norm() - share * (e1.norm() + e2.norm());
       if (away > radius + reach_) return;

@@ -112,6 +112,7 @@ class PlacedShapes {
   }
   const Place& place(Index i) const { return places_[static_cast<std::size_t>(i / k_block)][i % k_block]; }
   Index make_room(Index count);
+  bool is_reached(const FacePlace& place, double reach, Vec2& low, Vec2& high) const;
   bool meets(const OutlinePiece& piece) const;
   bool is_within_another(const OutlinePiece& piece) const;
   bool holds_another(const Copy& copy, std::span<const FacePlace> faces) const;
@@ -122,9 +123,8 @@ class PlacedShapes {
   int rings_;
   FaceBuckets buckets_;
   std::vector<Copy> copies_;
-  std::vector<Start> starts_;                     ///< a point of every loop
-  std::vector<Index> start_heads_;                ///< per face
-  std::vector<Index> piece_heads_, place_heads_;  ///< per bucket, of places per ring
+  std::vector<Start> starts_;                                   ///< a point of every loop
+  std::vector<Index> start_heads_, piece_heads_, place_heads_;  ///< per bucket, of places per ring
   std::vector<Piece> pieces_;
   std::vector<std::unique_ptr<Place[]>> places_;  ///< in blocks, which never move
   Index place_count_ = 0;
