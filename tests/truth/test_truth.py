@@ -77,7 +77,6 @@ def test_random_input_meets_the_truths():
         ("ways.maps_do_not_fold", 20284209),  # far from the origin a step of a line across is rounding, refused
         ("ways.maps_do_not_fold", 20284539),  # a closed curve that ends along its beginning: flow below doubles between
         ("ways.maps_do_not_fold", 1000020284682),  # half of a disk on a neck of 1e-9: folded by what factors round
-        ("ways.maps_of_narrow_bands", 1000000086059),  # 2.5e-9 wide at 5e3 from the origin: told by rounded places
         ("ways.maps_do_not_fold", 30520017),  # a fan of slivers laid on each other
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
         ("plane.lifted_cells", 12073),  # sides of twins in line to rounding, met as if none were between them

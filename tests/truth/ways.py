@@ -479,8 +479,7 @@ def maps_of_narrow_bands(mesh: sb.Mesh, rng: Random) -> None:
     across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     axes = np.stack([corners[1] - corners[0], np.cross(across, corners[1] - corners[0])])
     axes /= np.linalg.norm(axes, axis=1)[:, None]
-    # By their weights: far from the origin places are rounded by more than the width of such a band allows for.
-    line, places = (at.barycentric[:, 1:] @ ((corners[1:] - corners[0]) @ axes.T) for at in (points, found.points))
+    line, places = ((at - corners[0]) @ axes.T for at in (points.positions(mesh), found.vertices))
     wanted = np.array([to_polyline(place, line)[0][0] for place in places])
     off = np.abs(np.abs(found.uv[:, 1]) - wanted)
     assert off.max() <= (1e-4 if len(line) == 2 else 1 / 3) * radius

@@ -260,7 +260,7 @@ class Patch {
     if (number_[vertex] < next) return number_[vertex];
     const SurfacePoint& point = sheet_.points[node];
     map_.points.push_back({near_.faces[point.face], point.barycentric});
-    map_.vertices.push_back(sheet_.positions[node] + near_.origin);
+    map_.vertices.push_back(sheet_.positions[node]);
     map_.uv.push_back(place);
     return next;
   }

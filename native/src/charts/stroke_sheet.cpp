@@ -346,18 +346,17 @@ NearPart near_part(const Mesh& whole, const SurfaceCurve& curve, double radius, 
   }
   std::vector<Index> number(3 * faces.size());
   std::vector<double> xyz;
-  const Vec3 origin = whole.position(whole.triangles()[curve.segments().front().face][0]);
   for (Index c = 0; c < static_cast<Index>(number.size()); ++c) {
     const Index root = corners.root(c);
     if (root == c) {
       number[c] = static_cast<Index>(xyz.size() / 3);
-      const Vec3 at = whole.position(whole.from(3 * faces[c / 3] + c % 3)) - origin;
+      const Vec3& at = whole.position(whole.from(3 * faces[c / 3] + c % 3));
       xyz.insert(xyz.end(), at.begin(), at.end());
     } else {
       number[c] = number[root];
     }
   }
-  return {origin, Mesh(xyz, number, stage), std::move(faces)};
+  return {Mesh(xyz, number, stage), std::move(faces)};
 }
 
 Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, double size, const JobStage& stage) {

@@ -13,7 +13,6 @@ namespace saddleback::charts {
 
 /// The part of a mesh near a curve, as a mesh of its own.
 struct NearPart {
-  Vec3 origin;  ///< a vertex by the curve, from which places are taken: far from all, narrow bands would be rounded off
   Mesh mesh;
   std::vector<Index> faces;  ///< of the whole mesh, whose corners keep their order
 };
