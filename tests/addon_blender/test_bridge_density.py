@@ -144,7 +144,7 @@ def test_weights_of_the_evaluated_mesh(item):
         ({"density_source": "VERTEX_GROUP"}, "'Grid' has no vertex group;"),
         ({"density_source": "VERTEX_GROUP", "density_name": "Gone"}, "'Grid' has no vertex group 'Gone';"),
         ({"density_source": "ATTRIBUTE"}, "'Grid' needs the name of an attribute"),
-        ({"density_source": "ATTRIBUTE", "density_name": "Gone"}, "'Grid' has no attribute 'Gone';"),
+        ({"density_source": "ATTRIBUTE", "density_name": "Gone"}, "'Grid' has no attribute 'Gone' for the density;"),
         ({"density_source": "COLOR"}, "'Grid' has no color attribute;"),
         ({"density_source": "COLOR", "density_name": "Gone"}, "'Grid' has no color attribute 'Gone';"),
         ({"density_source": "MASK"}, "'Grid' has no sculpt mask;"),

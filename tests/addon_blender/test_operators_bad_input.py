@@ -119,7 +119,7 @@ def test_sites_object_is_missing_or_useless():
     lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
     bpy.context.scene.collection.objects.link(lamp)
     add_object("Void", [], [], active=False)
-    refuse("no object ''", sites_source="OBJECT")
+    refuse("no object is chosen to take sites from", sites_source="OBJECT")
     refuse("no object 'Gone'", sites_source="OBJECT", sites_object="Gone")
     refuse("'Lamp' is no mesh object", sites_source="OBJECT", sites_object="Lamp")
     refuse("'Void' has no vertices", sites_source="OBJECT", sites_object="Void")

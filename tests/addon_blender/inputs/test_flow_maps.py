@@ -163,7 +163,7 @@ def test_what_the_field_cannot_follow_is_told():
     add_vectors(item, "outward", "POINT", [vertex.co for vertex in item.data.vertices])
     before = fingerprint()
     for call, text in (
-        ({"painted": "ATTRIBUTE"}, "has no attribute '' for directions"),
+        ({"painted": "ATTRIBUTE"}, "needs the name of an attribute for directions"),
         ({"painted": "ATTRIBUTE", "painted_attribute": "none"}, "has no direction along the surface anywhere"),
         ({"painted": "ATTRIBUTE", "painted_attribute": WRITTEN}, "would be written over attribute"),
         ({"painted": "COLOR"}, "has no color attribute"),

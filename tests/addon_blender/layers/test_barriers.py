@@ -128,7 +128,7 @@ def test_what_is_enclosed_is_told_as_not_reached():
     ("settings", "sentence"),
     [
         ({"barriers": "SEAMS"}, "has no edge that is marked as a seam; mark some, or choose other barriers"),
-        ({"barriers": "ATTRIBUTE"}, "has no attribute '' for barriers; select edges or faces in Edit Mode"),
+        ({"barriers": "ATTRIBUTE"}, "needs the name of an attribute for barriers; select edges or faces in Edit Mode"),
         ({"barriers": "ATTRIBUTE", "barriers_name": "Way"}, "the attribute 'Way' is none"),
         ({"barriers": "ATTRIBUTE", "barriers_name": "All"}, "the barriers leave no face; choose other barriers"),
         (

@@ -174,11 +174,15 @@ def test_a_region_chosen_before_the_first_run_counts():
     ("region", "name", "sentence"),
     [
         ("MATERIAL", "None", "'Ball' does not show a material 'None'; choose another region for the layer"),
-        ("MATERIAL", "", "does not show a material ''"),
+        ("MATERIAL", "", "'Ball' needs the name of a material for the region; choose another region"),
         ("VERTEX_GROUP", "Nobody", "no face is in the region, vertex group 'Nobody'; choose others, or choose another"),
         ("VERTEX_GROUP", "No", "'Ball' has no vertex group 'No'; paint one or choose another region"),
         ("ATTRIBUTE", "No", "'Ball' has no attribute 'No' for the region; paint one, or choose another region"),
-        ("FACES", "", "'Ball' has no attribute '' for the region; select faces and press Take Selected Faces"),
+        (
+            "FACES",
+            "",
+            "'Ball' needs the name of an attribute for the region; select faces and press Take Selected Faces",
+        ),
     ],
 )
 @pytest.mark.parametrize("operator", ["tessellate", "distribute", "distance", "path", "voronoi_2d", "direction_field"])

@@ -12,7 +12,7 @@ from ...core.errors import BadInputError
 from ...core.results import Indices
 from ...core.settings import BarrierSettings
 from ...core.surfaces.parts import NO_EDGES
-from .density import NUMBER_TYPES
+from .density import NUMBER_TYPES, no_attribute
 
 OTHERS = "choose other barriers"
 MARKS = {"SEAMS": ("use_seam", "marked as a seam"), "SHARP": ("use_edge_sharp", "marked sharp")}
@@ -33,8 +33,8 @@ def read_barriers(
     attribute = mesh.attributes.get(name) if name else None
     if attribute is None:
         raise BadInputError(
-            f"'{source.name}' has no attribute '{name}' for barriers; select edges or faces in Edit Mode and press "
-            f"Take Selection, or {OTHERS}"
+            f"{no_attribute(source, name, 'barriers')}; select edges or faces in Edit Mode and press Take "
+            f"Selection, or {OTHERS}"
         )
     if attribute.domain not in ("EDGE", "FACE") or attribute.data_type not in NUMBER_TYPES:
         raise BadInputError(

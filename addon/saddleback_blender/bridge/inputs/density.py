@@ -118,14 +118,17 @@ def _read_former_group(
     return members.tolist(), values[members].tolist()
 
 
+def no_attribute(source: bpy.types.Object, name: str, purpose: str) -> str:
+    """Says that the mesh has no attribute of this name, or that none is named yet."""
+    what = f"has no attribute '{name}'" if name else "needs the name of an attribute"
+    return f"'{source.name}' {what} for {purpose}"
+
+
 def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
     """(V,) values of a number attribute of any domain, averaged to the vertices, and its name for messages."""
     attribute = mesh.attributes.get(name) if name else None
     if attribute is None:
-        wanted = (
-            f"has no attribute '{name}'; check its name" if name else "needs the name of an attribute for the density"
-        )
-        raise BadInputError(f"'{source.name}' {wanted} or choose another density")
+        raise BadInputError(f"{no_attribute(source, name, 'the density')}; check its name or choose another density")
     label = f"attribute '{name}'"
     if attribute.data_type not in NUMBER_TYPES:
         kind = attribute.data_type.lower().replace("_", " ")

@@ -14,7 +14,7 @@ from ...core.requests import GivenDirections
 from ...core.results import Reals
 from ...core.settings import DirectionFieldSettings
 from ..outputs.out_attributes import symmetry_of
-from .density import colors_of_tiles, to_vertices
+from .density import colors_of_tiles, no_attribute, to_vertices
 from .mesh_in import read_triangle_polygons, scale_of, scaled
 from .voronoi_in import read_triangle_corners
 
@@ -43,9 +43,7 @@ def read_directions(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -
     """A vector attribute of vertices, faces or corners. Raises BadInputError where there is none of this name."""
     attribute = mesh.attributes.get(name) if name else None
     if attribute is None:
-        raise BadInputError(
-            f"'{source.name}' has no attribute '{name}' for directions; press Direction Field, or check its name"
-        )
+        raise BadInputError(f"{no_attribute(source, name, 'directions')}; press Direction Field, or check its name")
     if attribute.data_type != "FLOAT_VECTOR" or attribute.domain == "EDGE":
         raise BadInputError(
             f"'{source.name}': attribute '{name}' holds no vectors of vertices or faces; choose another"

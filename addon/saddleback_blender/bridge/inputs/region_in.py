@@ -15,7 +15,7 @@ from ...core.results import Reals
 from ...core.settings import BarrierSettings, RegionSettings
 from ...core.surfaces.parts import NO_EDGES
 from .barriers_in import OTHERS, read_barriers
-from .density import NUMBER_TYPES, read_attribute, read_vertex_group
+from .density import NUMBER_TYPES, no_attribute, read_attribute, read_vertex_group
 from .materials_in import shown_materials
 from .mesh_in import read_surface
 
@@ -48,7 +48,8 @@ def _faces(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: RegionSetti
     if settings.region == "MATERIAL":
         slots = [material.name if material is not None else "" for material in shown_materials(source, mesh)]
         if name not in slots or not name:
-            raise BadInputError(f"'{source.name}' does not show a material '{name}'; {ANOTHER_REGION}")
+            lacks = f"does not show a material '{name}'" if name else "needs the name of a material for the region"
+            raise BadInputError(f"'{source.name}' {lacks}; {ANOTHER_REGION}")
         wanted = np.array([slot == name for slot in slots])
         numbers = compat.read_numbers(mesh.polygons, "material_index")
         return wanted[np.minimum(numbers, len(slots) - 1)], f"material '{name}'"
@@ -58,7 +59,7 @@ def _faces(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: RegionSetti
     attribute = mesh.attributes.get(name) if name else None
     if attribute is None:
         how = "select faces and press Take Selected Faces" if settings.region == "FACES" else "paint one"
-        raise BadInputError(f"'{source.name}' has no attribute '{name}' for the region; {how}, or {ANOTHER_REGION}")
+        raise BadInputError(f"{no_attribute(source, name, 'the region')}; {how}, or {ANOTHER_REGION}")
     return _by_attribute(source, mesh, attribute), f"attribute '{name}'"
 
 

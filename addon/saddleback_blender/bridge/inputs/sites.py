@@ -111,7 +111,8 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
     """(n, 3) places of another mesh object's vertices, as its modifiers leave them."""
     other = find(bpy.data.objects, name)
     if other is None:
-        raise BadInputError(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
+        missing = f"there is no object '{name}'" if name else "no object is chosen"
+        raise BadInputError(f"'{source.name}': {missing} to take sites from; choose one")
     if other == source:
         raise BadInputError(f"'{source.name}' cannot take its sites from itself; choose another object, or Selected")
     if other.type != "MESH":
