@@ -400,12 +400,10 @@ def test_scales_leave_no_skin_bare_and_meet_only_where_they_overlap(look, make):
     item.modifiers.new("Smooth", "SUBSURF").levels = 2
     apply(look)
     shown = find_output(item, "shapes")
-    assert bare_share(item, shown) < 0.02
-    if look == "SCALES":
-        assert not passing_pairs(shown)
+    assert bare_share(item, shown) < 0.02 and not passing_pairs(shown)
     assert bpy.ops.saddleback.check_distribution() == {"FINISHED"}
     assert "none touches another" in jobs.state.line  # of what is not overlapped
-    if look == "SCALES" and make == "torus":
+    if make == "torus":
         bpy.ops.saddleback.distribute(no_crossings=False)
         assert passing_pairs(find_output(item, "shapes")) > 100  # so the count can fail
 
@@ -422,11 +420,12 @@ def monkey():
     return bpy.context.active_object
 
 
+@pytest.mark.parametrize("look", ["SCALES", "FEATHERS"])
 @pytest.mark.parametrize("make", [strip, monkey])
-def test_small_scales_lie_where_skin_would_be_bare(make):
+def test_small_ones_lie_where_skin_would_be_bare(look, make):
     """Along borders and where sharp edges have others drawn smaller."""
     item = make()
-    apply("SCALES")
+    apply(look)
     shown = find_output(item, "shapes")
     assert bare_share(item, shown) < 0.02 and not passing_pairs(shown)
     assert "small shapes lie where skin would be bare" in jobs.state.figures[-1]

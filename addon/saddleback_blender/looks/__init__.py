@@ -79,7 +79,10 @@ LOOKS: dict[str, Look] = {
     ),
     "FEATHERS": Look(
         "Feathers", "Plumage along the strokes", "FORCE_WIND", "distribute",
-        {"shapes": "FEATHERS", "count": 700, "overlap": 0.65, "tilt": math.radians(9.0), "fit": 0.04},
+        {
+            "shapes": "FEATHERS", "count": 700, "overlap": 0.65, "tilt": math.radians(12.0), "no_crossings": True,
+            "fill_gaps": True, "fit": 0.04,
+        },
         Finish("Feathers", ("#2b3f5c", "#35557a", "#24344c", "#4a7296", "#1c2a3d"), 0.6),
         ground="#161f2c",
     ),

@@ -18,6 +18,7 @@ from ..surfaces.quaternions import turned
 PLACES_EACH = 20  # of a shape: where the surface is looked at, so that no gap of half a footprint's width is missed
 SIZES = (0.6, 0.35, 0.2)  # of the shapes beside a gap: what it is filled with, the largest first
 APART = 0.5  # of their size: how far those of one size lie from each other
+WIDE = 0.6  # of their length: both are closer for shapes that are narrower than this
 UNDER, THIN = 0.05, 1e-3  # of a shape's size: how far below the surface a line of sight begins, and how wide it is
 SEED = 1
 
@@ -25,21 +26,22 @@ SEED = 1
 class Gaps:
     """Places spread over the surface, and which of them nothing lies over as seen along the normal."""
 
-    def __init__(self, mesh: Any, shapes: Any, frames: tuple[Reals, Reals, Reals], height: float) -> None:
-        """`frames` of the shapes; `height`: how high they stand, as a share of their size."""
+    def __init__(self, mesh: Any, shapes: Any, frames: tuple[Reals, Reals, Reals], extent: Reals) -> None:
+        """`frames` of the shapes; `extent` (3,): how long and wide they are and how high they stand, of their size."""
         sb = native.load()
         self._mesh, self._shapes = mesh, shapes
         middle, turns, _ = frames
         x, y = (turned(turns, np.tile(axis, (len(middle), 1))) for axis in np.eye(3)[:2])
         self._along, scale = x, np.asarray(self._shapes.scale)
-        self._points = sb.sample(mesh, PLACES_EACH * len(middle), seed=SEED)
+        self._closer = float(np.sqrt(min(extent[:2].min() / extent[:2].max() / WIDE, 1.0)))
+        self._points = sb.sample(mesh, round(PLACES_EACH / self._closer) * len(middle), seed=SEED)
         self._places = np.asarray(self._points.positions(mesh))
         self._normals = normals_at(mesh.vertices, mesh.triangles, self._points.faces, self._points.barycentric)
         # The shape nearest to a place: a speck of a triangle stands for each.
         specks = np.stack([middle, middle + THIN * scale[:, None] * x, middle + THIN * scale[:, None] * y], axis=1)
         corners = np.arange(3 * len(middle), dtype=np.int32).reshape(-1, 3)
         self._near = sb.project(sb.Mesh(specks.reshape(-1, 3), corners), self._places).faces
-        self._size, self._height = scale[self._near], height
+        self._size, self._height = scale[self._near], extent[2]
         self._bare = np.arange(len(self._places))
 
     def look(self, vertices: Reals, triangles: Indices, job: Any) -> None:
@@ -65,7 +67,7 @@ class Gaps:
         octaves = np.round(np.log2(sizes / largest))  # those of about one size keep off each other
         for octave in np.unique(octaves):
             places = self._bare[octaves == octave]
-            grid = PointGrid(APART * share * largest * 2.0**octave)
+            grid = PointGrid(APART * self._closer * share * largest * 2.0**octave)
             chosen.append(places[grid.take_free(self._places[places])])
         rows = np.sort(np.concatenate(chosen))
         near, faces = self._near[rows], self._points.faces[rows]

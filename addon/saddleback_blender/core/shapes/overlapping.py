@@ -160,8 +160,10 @@ def _filled(
     order: Order, mapped: Any, bent: Bent, factor: Reals, is_out: NDArray[np.bool_], job: Any
 ) -> tuple[Order, Reals, NDArray[np.bool_], Bent]:
     """With small shapes behind where there was bare skin: what was laid, how large, which of them not, the copies."""
-    height = max(float(solid.vertices[:, 2].max()) for solid in order.solids if solid is not None)
-    gaps, known = Gaps(order.mesh, order.placements, mapped.frames(), height), 0
+    solids = [solid.vertices for solid in order.solids if solid is not None]
+    extents = np.array([(*np.ptp(solid[:, :2], axis=0), solid[:, 2].max()) for solid in solids])
+    extent = np.append(extents[:, :2].min(axis=0), extents[:, 2].max())
+    gaps, known = Gaps(order.mesh, order.placements, mapped.frames(), extent), 0
     for share in SIZES:
         is_new = (bent.triangle_copy >= known) & ~is_out[bent.triangle_copy]
         gaps.look(bent.vertices, bent.triangles[is_new], job)
