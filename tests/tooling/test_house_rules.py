@@ -143,6 +143,12 @@ def test_hypotenuses_are_measured_alike_on_every_system():
         assert "std::hypot(" not in source.read_text(encoding="utf-8"), f"{source}: support/hypotenuse.h has it"
 
 
+def test_results_keep_others_alive_in_one_way():
+    """pybind11 3.1 applies keep_alive<0, ...> also where it has refused the arguments, and crashes."""
+    for source in (ROOT / "native/bindings").rglob("*.cpp"):
+        assert "py::keep_alive<0" not in source.read_text(encoding="utf-8"), f"{source}: convert.h has keeping()"
+
+
 ROOMS = ROOT / "native/src"
 # From the ground up: a subfolder includes itself and those before it.
 SUBFOLDERS = {

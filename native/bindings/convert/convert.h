@@ -55,6 +55,15 @@ Job* as_job(const py::object& value);
 /// Tells whether the array-like's elements are integers, which means vertex indices where points are taken.
 bool holds_integers(const py::object& value);
 
+/// The result as a Python object that keeps another one alive. Not py::keep_alive<0, ...>, which pybind11 3.1 also
+/// applies where it has refused the arguments, to a result that is no object.
+template <class T>
+py::object keeping(const py::handle& kept, T&& result) {
+  py::object object = py::cast(std::forward<T>(result));
+  py::detail::keep_alive_impl(object, kept);
+  return object;
+}
+
 /// numpy array that owns the moved vector.
 template <class T>
 py::array_t<T> to_array(std::vector<T>&& values) {

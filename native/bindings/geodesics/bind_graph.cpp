@@ -51,15 +51,14 @@ void save(const SaddleVertexGraph& graph, const py::object& path, const py::obje
   without_gil([&] { graph.save(file, token); });
 }
 
-std::unique_ptr<SaddleVertexGraph> load(const py::object& path, const py::object& mesh_object, bool mmap,
-                                        const py::object& job) {
+py::object load(const py::object& path, const py::object& mesh_object, bool mmap, const py::object& job) {
   const std::string file = as_path(path, "path");
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const JobIn token(job);
-  return without_gil([&] {
-    return std::make_unique<SaddleVertexGraph>(mmap ? SaddleVertexGraph::open(file, mesh, token)
-                                                    : SaddleVertexGraph::load(file, mesh, token));
-  });
+  return keeping(mesh_object, without_gil([&] {
+                   return mmap ? SaddleVertexGraph::open(file, mesh, token)
+                               : SaddleVertexGraph::load(file, mesh, token);
+                 }));
 }
 
 void check(const SaddleVertexGraph& graph, const py::object& job) {
@@ -197,7 +196,7 @@ void bind_graph(py::module_& m) {
            py::arg("pinned") = false, py::keep_alive<1, 2>())
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
       .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("mmap") = false,
-                  py::arg("job") = py::none(), py::keep_alive<0, 2>(), k_load_doc)
+                  py::arg("job") = py::none(), k_load_doc)
       .def("check", &check, py::kw_only(), py::arg("job") = py::none(), k_check_doc)
       .def_property_readonly("mesh", &SaddleVertexGraph::mesh, py::return_value_policy::reference, "The Mesh.")
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")

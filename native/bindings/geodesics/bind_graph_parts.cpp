@@ -74,15 +74,14 @@ py::bytes unite(const py::object& arcs, const py::object& across, const py::obje
   return as_bytes(without_gil([&] { return unite_arcs(bytes.bytes(), others.spans, thread_count, token); }));
 }
 
-std::unique_ptr<SaddleVertexGraph> from_parts(const py::object& mesh_object, const py::object& parts,
-                                              const py::object& threads, const py::object& job) {
+py::object from_parts(const py::object& mesh_object, const py::object& parts, const py::object& threads,
+                      const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const ManyBytes bytes(parts, "parts");
   const Index thread_count = as_integer(threads, "threads");
   const JobIn token(job);
-  return without_gil([&] {
-    return std::make_unique<SaddleVertexGraph>(SaddleVertexGraph::from_parts(mesh, bytes.spans, thread_count, token));
-  });
+  return keeping(mesh_object,
+                 without_gil([&] { return SaddleVertexGraph::from_parts(mesh, bytes.spans, thread_count, token); }));
 }
 
 constexpr const char* k_find_doc =
@@ -217,7 +216,7 @@ void bind_graph_parts(py::module_& m) {
   m.def("_check_graph_size", &check_graph_size, py::arg("triangle_count"), "Refuses what find_arcs refuses.");
   py::class_<SaddleVertexGraph> type = m.attr("SaddleVertexGraph");
   type.def_static("from_parts", &from_parts, py::arg("mesh"), py::arg("parts"), py::kw_only(), py::arg("threads") = 0,
-                  py::arg("job") = py::none(), py::keep_alive<0, 1>(), k_from_parts_doc);
+                  py::arg("job") = py::none(), k_from_parts_doc);
 }
 
 }  // namespace saddleback::bindings

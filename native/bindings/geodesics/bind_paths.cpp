@@ -263,20 +263,13 @@ GeodesicPath shorten_curve(const py::object& curve, const py::object& job) {
   return without_gil([&] { return shortened_curve(given, token); });
 }
 
-/// A curve keeps its mesh alive.
-py::object curve_of(const py::object& graph, SurfaceCurve&& curve) {
-  py::object result = py::cast(std::move(curve));
-  py::detail::keep_alive_impl(result, graph);
-  return result;
-}
-
 py::object through(const py::object& graph_object, const py::object& points, bool closed, bool smooth,
                    const py::object& halvings, const py::object& job) {
   const SaddleVertexGraph& graph = as_graph(graph_object);
   const SurfacePoints given = as_surface_points(points, graph.mesh(), "points");
   const CurveThroughOptions options{closed, smooth, as_integer(halvings, "halvings")};
   const JobIn token(job);
-  return curve_of(graph_object, without_gil([&] { return curve_through(graph, given, options, token); }));
+  return keeping(graph_object, without_gil([&] { return curve_through(graph, given, options, token); }));
 }
 
 py::object bezier(const py::object& graph_object, const py::object& controls, const py::object& halvings,
@@ -285,7 +278,7 @@ py::object bezier(const py::object& graph_object, const py::object& controls, co
   const SurfacePoints given = as_surface_points(controls, graph.mesh(), "controls");
   const int wanted = as_integer(halvings, "halvings");
   const JobIn token(job);
-  return curve_of(graph_object, without_gil([&] { return bezier_curve(graph, given, wanted, token); }));
+  return keeping(graph_object, without_gil([&] { return bezier_curve(graph, given, wanted, token); }));
 }
 
 void bind_geodesic_paths(py::module_& m) {
@@ -431,11 +424,7 @@ py::list feature_curves_of(const py::object& mesh_object, const py::object& angl
   options.least_length = as_real(least_length, "least_length");
   std::vector<SurfaceCurve> found = without_gil([&] { return feature_curves(mesh, options); });
   py::list result;
-  for (SurfaceCurve& curve : found) {
-    py::object item = py::cast(std::move(curve));
-    py::detail::keep_alive_impl(item, mesh_object);
-    result.append(std::move(item));
-  }
+  for (SurfaceCurve& curve : found) result.append(keeping(mesh_object, std::move(curve)));
   return result;
 }
 

@@ -266,12 +266,10 @@ py::object edit(Editor& self, const py::object& singularities, const py::object&
   const DirectionFieldOptions options = as_options(as_mesh(self.mesh, "mesh"), self.symmetry, singularities, strokes,
                                                    align, loop_indices, align_weight, directions, weights);
   const JobIn token(job);
-  py::object result = py::cast(without_gil([&] {
-    const std::lock_guard lock(self.mutex);
-    return self.editor.field(options, token);
-  }));
-  py::detail::keep_alive_impl(result, self.mesh);
-  return result;
+  return keeping(self.mesh, without_gil([&] {
+                   const std::lock_guard lock(self.mutex);
+                   return self.editor.field(options, token);
+                 }));
 }
 
 py::object field_of(const py::object& mesh, const py::object& symmetry, const py::object& singularities,
@@ -286,9 +284,7 @@ py::object field_from_vectors(const py::object& mesh_object, const py::object& v
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const std::vector<Vec3> directions = as_vectors(vectors, "vectors");
   const int wanted = as_integer(symmetry, "symmetry");
-  py::object result = py::cast(without_gil([&] { return field_of_vectors(mesh, wanted, directions); }));
-  py::detail::keep_alive_impl(result, mesh_object);
-  return result;
+  return keeping(mesh_object, without_gil([&] { return field_of_vectors(mesh, wanted, directions); }));
 }
 
 constexpr const char* k_of_turns_doc =
@@ -314,9 +310,12 @@ py::object field_from_turns(const py::object& mesh_object, const py::object& ang
   const int wanted = as_integer(symmetry, "symmetry");
   const ArrayIn<double> own = as_reals(angles, "angles", mesh.face_count());
   const ArrayIn<double> rows = as_points3(turns, "turns");
-  py::object result = py::cast(without_gil([&] { return field_of_turns(mesh, wanted, own.values, rows.values); }));
-  py::detail::keep_alive_impl(result, mesh_object);
-  return result;
+  return keeping(mesh_object, without_gil([&] { return field_of_turns(mesh, wanted, own.values, rows.values); }));
+}
+
+py::object turned(const py::object& self, const py::object& angle) {
+  const auto& field = py::cast<const DirectionField&>(self);
+  return keeping(self, field.turned(as_real(angle, "angle")));
 }
 
 py::dict singularities_of(const DirectionField& field) {
@@ -355,9 +354,7 @@ py::object load_field(const py::tuple& state) {
   restore(parts[3], turns);
   std::vector<double> flat;
   for (const Vec3& row : turns) flat.insert(flat.end(), row.begin(), row.end());
-  py::object field = py::cast(DirectionField(mesh, symmetry, std::move(angles), std::move(flat)));
-  py::detail::keep_alive_impl(field, parts[0]);
-  return field;
+  return keeping(parts[0], DirectionField(mesh, symmetry, std::move(angles), std::move(flat)));
 }
 
 void bind_direction_field(py::module_& m) {
@@ -410,7 +407,7 @@ void bind_direction_field(py::module_& m) {
       .def("directions", &directions_at, py::arg("points"),
            "(n, 3) float64: the field at vertices or SurfacePoints, unit vectors in the planes of the points' faces; "
            "continuous but at vertices, about which it turns evenly (there a mean is given).")
-      .def("turned", &DirectionField::turned, py::arg("angle"), py::keep_alive<0, 1>(),
+      .def("turned", &turned, py::arg("angle"),
            "Returns the field turned everywhere by an angle, radians counter-clockwise.")
       .def("__repr__", [](const DirectionField& field) {
         return message("<DirectionField: symmetry ", field.symmetry(), ", ", field.angles().size(), " faces, ",
@@ -428,9 +425,7 @@ py::object load_stroke(const py::tuple& state) {
   const py::tuple parts = as_state(state, 5);
   const auto [points, closed] = std::pair(py::cast<SurfacePoints>(parts[1]), py::cast<bool>(parts[2]));
   const SurfaceCurve curve(as_mesh(parts[0], "state"), points, closed);
-  py::object stroke = py::cast(Stroke{curve, py::cast<bool>(parts[3]), py::cast<double>(parts[4])});
-  py::detail::keep_alive_impl(stroke, parts[0]);
-  return stroke;
+  return keeping(parts[0], Stroke{curve, py::cast<bool>(parts[3]), py::cast<double>(parts[4])});
 }
 
 void bind_strokes(py::module_& m) {
