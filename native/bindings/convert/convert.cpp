@@ -19,15 +19,10 @@ std::string type_of(const py::handle& value) { return py::cast<std::string>(py::
   throw InputError(message(name, ": wanted ", wanted, ", got ", got));
 }
 
-py::array as_array(const py::object& value, const char* name, const std::string& wanted) {
-  if (value.is_none() || py::isinstance<py::str>(value) || py::isinstance<py::dict>(value))
-    refuse(name, wanted, value.is_none() ? "None" : "a " + type_of(value));
-  try {
-    return py::array::ensure(py::module_::import("numpy").attr("asarray")(value));
-  } catch (py::error_already_set& error) {
-    if (error.matches(PyExc_KeyboardInterrupt) || error.matches(PyExc_MemoryError)) throw;
-    refuse(name, wanted, "a " + type_of(value) + " that numpy makes no array of");
-  }
+/// Tells whether some of a numpy masked array's elements are masked: numbers behind the mask are none of the caller's.
+bool has_masked(const py::object& value) {
+  return py::isinstance<py::array>(value) && py::hasattr(value, "mask") &&
+         py::cast<bool>(value.attr("mask").attr("any")());
 }
 
 // columns: 0 for a flat array, else the number that each row must have. An empty list has no columns to show: it
@@ -103,6 +98,18 @@ py::object whole_number(const py::object& value, const char* name) {
 
 }  // namespace
 
+py::array as_array(const py::object& value, const char* name, const std::string& wanted) {
+  if (has_masked(value)) refuse(name, wanted, "masked elements");
+  if (value.is_none() || py::isinstance<py::str>(value) || py::isinstance<py::dict>(value))
+    refuse(name, wanted, value.is_none() ? "None" : "a " + type_of(value));
+  try {
+    return py::array::ensure(py::module_::import("numpy").attr("asarray")(value));
+  } catch (py::error_already_set& error) {
+    if (error.matches(PyExc_KeyboardInterrupt) || error.matches(PyExc_MemoryError)) throw;
+    refuse(name, wanted, "a " + type_of(value) + " that numpy makes no array of");
+  }
+}
+
 ArrayIn<double> as_points3(const py::object& value, const char* name) {
   return reals(value, name, 3, "shape (n, 3) of real numbers");
 }
@@ -139,6 +146,30 @@ ArrayIn<double> as_reals(const py::object& value, const char* name, Index count)
   return result;
 }
 
+ArrayIn<double> as_rows(const py::object& value, const char* name, const std::string& wanted) {
+  const py::array array = as_array(value, name, wanted);
+  if (array.ndim() != 2) refuse(name, wanted, shape_of(array));
+  if (array.size() == 0)
+    return {py::array_t<double, py::array::c_style>({array.shape(0), array.shape(1)}), {}, row_count(array, name)};
+  return reals(array, name, array.shape(1), wanted);
+}
+
+std::vector<std::uint8_t> as_flags(const py::object& value, const char* name) {
+  const std::string wanted = "shape (n,) of booleans";
+  const py::array array = shaped(value, name, 0, wanted);
+  if (array.dtype().kind() == 'b') {
+    const py::array_t<bool, py::array::c_style | py::array::forcecast> flags(array);
+    return {flags.data(), flags.data() + flags.size()};
+  }
+  const ArrayIn<Index> numbers = integers(array, name, 0, wanted);
+  std::vector<std::uint8_t> result;
+  for (const Index number : numbers.values) {
+    if (number != 0 && number != 1) refuse(name, wanted, message("the number ", number));
+    result.push_back(static_cast<std::uint8_t>(number));
+  }
+  return result;
+}
+
 ArrayIn<Index> as_indices(const py::object& value, const char* name) {
   return integers(value, name, 0, "shape (n,) of integers");
 }
@@ -162,7 +193,9 @@ double as_real(const py::object& value, const char* name) {
   const bool is_number =
       PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) ||
       (PyNumber_Check(value.ptr()) && py::hasattr(value, "__float__") && !py::hasattr(value, "__len__"));
-  if (py::isinstance<py::bool_>(value) || !is_number) refuse(name, "a real number", "a " + type_of(value));
+  const auto kind = py::cast<std::string>(py::getattr(py::getattr(value, "dtype", py::none()), "kind", py::str()));
+  if (py::isinstance<py::bool_>(value) || kind == "b" || kind == "c" || !is_number)  // "c": would lose a part
+    refuse(name, "a real number", "a " + type_of(value));
   const double number = PyFloat_AsDouble(value.ptr());
   if (number == -1.0 && PyErr_Occurred()) {
     PyErr_Clear();
@@ -206,10 +239,10 @@ Job* as_job(const py::object& value) {
   return py::cast<Job*>(value);
 }
 
-bool holds_integers(const py::object& value) {
-  const py::array array = as_array(value, "points", "an array");
+bool holds_integers(const py::object& value, const char* name) {
+  const py::array array = as_array(value, name, "vertex indices or a SurfacePoints");
   const char kind = array.dtype().kind();
-  return kind == 'i' || kind == 'u';
+  return kind == 'i' || kind == 'u' || array.size() == 0;
 }
 
 py::array read_only(py::array array) {

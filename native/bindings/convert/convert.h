@@ -32,17 +32,20 @@ struct ArrayIn {
 
 // Each throws InputError "NAME: wanted ..., got ...". Reals are any float or integer type; indices any integer type,
 // and every value must fit 32 bits.
-ArrayIn<double> as_points3(const py::object& value, const char* name);  ///< (n, 3) reals
-ArrayIn<double> as_points(const py::object& value, const char* name);   ///< (n, d) reals, d >= 2
+py::array as_array(const py::object& value, const char* name, const std::string& wanted);  ///< of any shape and type
+ArrayIn<double> as_points3(const py::object& value, const char* name);                     ///< (n, 3) reals
+ArrayIn<double> as_points(const py::object& value, const char* name);                      ///< (n, d) reals, d >= 2
 /// (face_count, 3) or (n,) reals, flat.
 ArrayIn<double> as_sides(const py::object& value, const char* name, Index face_count);
-ArrayIn<double> as_points2(const py::object& value, const char* name);             ///< (n, 2) reals
-ArrayIn<double> as_reals(const py::object& value, const char* name);               ///< (n,) reals
-ArrayIn<double> as_reals(const py::object& value, const char* name, Index count);  ///< (count,) reals
-ArrayIn<Index> as_indices(const py::object& value, const char* name);              ///< (n,) integers
-ArrayIn<Index> as_edges(const py::object& value, const char* name);                ///< (n, 2) integers
-ArrayIn<Index> as_triangles(const py::object& value, const char* name);            ///< (n, 3) integers
-Vec3 as_vec3(const py::object& value, const char* name);                           ///< three reals
+ArrayIn<double> as_points2(const py::object& value, const char* name);                          ///< (n, 2) reals
+ArrayIn<double> as_reals(const py::object& value, const char* name);                            ///< (n,) reals
+ArrayIn<double> as_reals(const py::object& value, const char* name, Index count);               ///< (count,) reals
+ArrayIn<double> as_rows(const py::object& value, const char* name, const std::string& wanted);  ///< (n, k) reals
+std::vector<std::uint8_t> as_flags(const py::object& value, const char* name);  ///< (n,) booleans, or 0 and 1
+ArrayIn<Index> as_indices(const py::object& value, const char* name);           ///< (n,) integers
+ArrayIn<Index> as_edges(const py::object& value, const char* name);             ///< (n, 2) integers
+ArrayIn<Index> as_triangles(const py::object& value, const char* name);         ///< (n, 3) integers
+Vec3 as_vec3(const py::object& value, const char* name);                        ///< three reals
 
 double as_real(const py::object& value, const char* name);    ///< a float or int, numpy's too
 Index as_integer(const py::object& value, const char* name);  ///< an int (not a float), numpy's too
@@ -52,8 +55,8 @@ std::uint64_t as_seed(const py::object& value, const char* name);
 std::string as_path(const py::object& value, const char* name);
 /// A saddleback.Job. Calls take their argument `job` as a JobIn instead.
 Job* as_job(const py::object& value);
-/// Tells whether the array-like's elements are integers, which means vertex indices where points are taken.
-bool holds_integers(const py::object& value);
+/// Tells whether the array-like's elements, if any, are integers: vertex indices where points are taken.
+bool holds_integers(const py::object& value, const char* name);
 
 /// The result as a Python object that keeps another one alive. Not py::keep_alive<0, ...>, which pybind11 3.1 also
 /// applies where it has refused the arguments, to a result that is no object.

@@ -16,8 +16,9 @@ void check_vertices(std::span<const Index> vertices, const Mesh& mesh, const cha
 
 std::vector<Index> as_vertices(const py::object& value, const char* argument) {
   if (PyIndex_Check(value.ptr()) && !py::isinstance<py::array>(value)) return {as_integer(value, argument)};
-  const bool is_points_of_space = !py::isinstance<py::str>(value) && !value.is_none() && !holds_integers(value);
-  if (is_points_of_space && (!py::hasattr(value, "__len__") || py::len(value) > 0))
+  const bool is_points_of_space =
+      !py::isinstance<py::str>(value) && !value.is_none() && !holds_integers(value, argument);
+  if (is_points_of_space)
     throw InputError(message(argument, ": wanted vertex indices or a SurfacePoints, got a ", type_of(value),
                              " that does not hold integers; saddleback.project turns positions into a SurfacePoints"));
   const ArrayIn<Index> indices = as_indices(value, argument);

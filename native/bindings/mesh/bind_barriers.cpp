@@ -23,11 +23,8 @@ struct Barred : BarredMesh {
 std::vector<std::uint8_t> as_faces(const py::object& value, const Mesh& mesh) {
   if (value.is_none()) return {};
   const py::array given = py::array::ensure(value);
-  if (given && given.dtype().kind() == 'b') {
-    const auto flags = py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(given);
-    if (flags.ndim() != 1) throw InputError(message("faces: wanted (", mesh.face_count(), ",) bools or face indices"));
-    return {flags.data(), flags.data() + flags.size()};
-  }
+  PyErr_Clear();  // as_indices says what is wrong
+  if (given && given.dtype().kind() == 'b') return as_flags(value, "faces");
   std::vector<std::uint8_t> left_out(static_cast<std::size_t>(mesh.face_count()), 0);
   const ArrayIn<Index> faces = as_indices(value, "faces");
   for (Index i = 0; i < faces.count; ++i) {

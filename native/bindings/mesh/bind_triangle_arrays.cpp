@@ -7,11 +7,19 @@
 namespace saddleback::bindings {
 namespace {
 
+constexpr const char* k_wanted_rows = "(V, k) floats";
+
 std::span<const Triangle> triangles_of(const ArrayIn<Index>& in) {
   return {reinterpret_cast<const Triangle*>(in.values.data()), in.values.size() / 3};
 }
 std::span<const Vec3> points_of(const ArrayIn<double>& in) {
   return {reinterpret_cast<const Vec3*>(in.values.data()), in.values.size() / 3};
+}
+
+Index as_vertex_count(const py::object& value) {
+  const Index count = as_integer(value, "vertex_count");
+  if (count < 0) throw InputError(message("vertex_count: wanted 0 or more, got ", count));
+  return count;
 }
 
 py::array normals(const py::object& vertices, const py::object& triangles) {
@@ -22,44 +30,40 @@ py::array normals(const py::object& vertices, const py::object& triangles) {
 
 py::array means(const py::object& triangles, const py::object& values) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
-  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(values);
-  if (!rows || rows.ndim() != 2) throw InputError("values: wanted (V, k) floats");
-  const auto width = static_cast<Index>(rows.shape(1));
-  const std::span numbers(rows.data(), static_cast<std::size_t>(rows.size()));
-  return to_array(without_gil([&] { return neighbor_means(numbers, width, triangles_of(indices)); }))
+  const ArrayIn<double> rows = as_rows(values, "values", k_wanted_rows);
+  const auto width = static_cast<Index>(rows.array.shape(1));
+  return to_array(without_gil([&] { return neighbor_means(rows.values, width, triangles_of(indices)); }))
       .reshape(std::vector<py::ssize_t>{-1, width});
 }
 
 py::tuple edges_of(const py::object& triangles, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
-  const Index count = as_integer(vertex_count, "vertex_count");
+  const Index count = as_vertex_count(vertex_count);
   TriangleEdges found = without_gil([&] { return triangle_edges(triangles_of(indices), count); });
   return py::make_tuple(to_rows<Index>(std::move(found.ends)), to_array(std::move(found.corner_edges)));
 }
 
 py::tuple border(const py::object& triangles, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
-  const Index count = as_integer(vertex_count, "vertex_count");
+  const Index count = as_vertex_count(vertex_count);
   BorderEdges found = without_gil([&] { return border_edges(triangles_of(indices), count); });
   return py::make_tuple(to_rows<Index>(std::move(found.ends)), to_array(std::move(found.triangles)));
 }
 
 py::array parts_of(const py::object& triangles, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
-  const Index count = as_integer(vertex_count, "vertex_count");
+  const Index count = as_vertex_count(vertex_count);
   return to_array(without_gil([&] { return connected_parts(triangles_of(indices), count); }));
 }
 
 py::tuple cut(const py::object& fields, const py::object& triangles, const py::object& column,
               const py::object& level) {
-  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(fields);
-  if (!rows || rows.ndim() != 2) throw InputError("fields: wanted (V, k) floats");
+  const ArrayIn<double> rows = as_rows(fields, "fields", k_wanted_rows);
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const Index at = as_integer(column, "column");
   const double value = as_real(level, "level");
-  const auto width = static_cast<Index>(rows.shape(1));
-  const std::span values(rows.data(), static_cast<std::size_t>(rows.size()));
-  LevelCut found = without_gil([&] { return cut_at_level(values, width, triangles_of(indices), at, value); });
+  const auto width = static_cast<Index>(rows.array.shape(1));
+  LevelCut found = without_gil([&] { return cut_at_level(rows.values, width, triangles_of(indices), at, value); });
   const std::vector<py::ssize_t> shape{-1, width};
   return py::make_tuple(to_array(std::move(found.fields)).reshape(shape), to_array(std::move(found.triangles)),
                         to_array(std::move(found.parents)), to_array(std::move(found.aboves)).attr("view")("bool"));
@@ -68,7 +72,7 @@ py::tuple cut(const py::object& fields, const py::object& triangles, const py::o
 py::tuple boundary(const py::object& triangles, const py::object& cells, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const ArrayIn<Index> owners = as_indices(cells, "triangle_cell");
-  const Index count = as_integer(vertex_count, "vertex_count");
+  const Index count = as_vertex_count(vertex_count);
   CellBoundary found = without_gil([&] { return cell_boundary(triangles_of(indices), owners.values, count); });
   return py::make_tuple(to_rows<Index>(std::move(found.segments)), to_rows<Index>(std::move(found.cells)));
 }
@@ -85,16 +89,14 @@ py::array boundary_distance(const py::object& vertices, const py::object& triang
 
 py::tuple refine(const py::object& fields, const py::object& triangles, const py::object& cells,
                  const py::object& levels, const py::object& tolerance) {
-  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(fields);
-  if (!rows || rows.ndim() != 2) throw InputError("fields: wanted (V, k) floats");
+  const ArrayIn<double> rows = as_rows(fields, "fields", k_wanted_rows);
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const ArrayIn<Index> owners = as_indices(cells, "triangle_cell");
   const ArrayIn<double> wanted = as_reals(levels, "levels");
   const double most = as_real(tolerance, "tolerance");
-  const auto width = static_cast<Index>(rows.shape(1));
-  const std::span values(rows.data(), static_cast<std::size_t>(rows.size()));
+  const auto width = static_cast<Index>(rows.array.shape(1));
   BoundaryRefinement found = without_gil([&] {
-    return refine_to_cell_boundary(values, width, triangles_of(indices), owners.values, wanted.values, most);
+    return refine_to_cell_boundary(rows.values, width, triangles_of(indices), owners.values, wanted.values, most);
   });
   const std::vector<py::ssize_t> shape{-1, width};
   return py::make_tuple(to_array(std::move(found.fields)).reshape(shape), to_array(std::move(found.triangles)),

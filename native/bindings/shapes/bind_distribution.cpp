@@ -86,16 +86,21 @@ const Mesh& mesh_of(const py::object& graph, py::object& mesh_object) {
   return as_mesh(graph, "graph");
 }
 
+/// Tells whether it is a list or an array, of one dimension at least.
+bool is_list(const py::handle value) {
+  return py::hasattr(value, "__len__") && !py::isinstance<py::str>(value) &&
+         !(py::isinstance<py::array>(value) && py::reinterpret_borrow<py::array>(value).ndim() == 0);
+}
+
 std::vector<double> as_sizes(const py::object& value, const char* name) {
-  if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value) || !py::hasattr(value, "__len__"))
-    return {as_real(value, name)};
+  if (!is_list(value)) return {as_real(value, name)};
   const ArrayIn<double> array = as_reals(value, name);
   return {array.values.begin(), array.values.end()};
 }
 
 std::vector<Index> as_counts(const py::object& value) {
   if (value.is_none()) return {};
-  if (!py::hasattr(value, "__len__")) return {as_integer(value, "counts")};
+  if (!is_list(value)) return {as_integer(value, "counts")};
   const ArrayIn<Index> array = as_indices(value, "counts");
   if (array.count == 0) throw InputError("counts has 0 values, wanted one a shape");
   return {array.values.begin(), array.values.end()};
@@ -114,20 +119,14 @@ double as_packing(const py::object& mode) {
   throw InputError(message("mode: wanted \"random\", \"packed\" or a number from 0 to 1, got \"", name, "\""));
 }
 
-std::vector<std::uint8_t> as_mask(const py::object& value) {
-  if (value.is_none()) return {};
-  const auto array = py::array_t<bool>::ensure(value);
-  if (!array || array.ndim() != 1) throw InputError("forbidden: wanted an (F,) array of booleans");
-  return {array.data(), array.data() + array.size()};
-}
-
 /// A list for all shapes, or one a shape. Numbers, as many as shapes, are one a shape, unless they are one a vertex.
 std::vector<std::vector<double>> as_lists(const py::object& value, const char* name, std::size_t shapes,
                                           Index vertices) {
-  const auto is_list = [](const py::handle item) { return py::hasattr(item, "__len__"); };
-  if (!is_list(value) || py::isinstance<py::str>(value)) return {as_sizes(value, name)};
+  if (!is_list(value)) return {as_sizes(value, name)};
   std::vector<py::object> items;
-  for (const py::handle item : value) items.push_back(py::reinterpret_borrow<py::object>(item));
+  const bool is_array = py::hasattr(value, "__array__");  // of others, whose iteration need not go over rows
+  for (const py::handle item : is_array ? as_array(value, name, "real numbers") : value)
+    items.push_back(py::reinterpret_borrow<py::object>(item));
   std::vector<std::vector<double>> result;
   if (std::any_of(items.begin(), items.end(), is_list)) {
     for (const py::object& item : items) result.push_back(as_sizes(item, name));
@@ -151,6 +150,7 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   DistributionOptions options;
   options.counts = as_counts(counts);
   if (!shares.is_none()) options.shares = as_sizes(shares, "shares");
+  if (!shares.is_none() && options.shares.empty()) throw InputError("shares has 0 values, wanted one a shape");
   options.fields = as_fields(field);
   const std::size_t shape_count = made->shapes.size();
   if (!density.is_none()) options.density = as_lists(density, "density", shape_count, mesh.vertex_count());
@@ -163,7 +163,7 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   const ArrayIn<double> range = as_reals(size_range, "size_range", 2);
   options.smallest = range.values[0];
   options.largest = range.values[1];
-  options.forbidden = as_mask(forbidden);
+  if (!forbidden.is_none()) options.forbidden = as_flags(forbidden, "forbidden");
   options.mirror = mirror;
   options.bend = bend;
   made->field = bend ? kept_fields(field) : py::none();
@@ -205,10 +205,12 @@ py::object mapped_of(Distribution& self) {
   return self.mapped;
 }
 
-py::object outline_of(Distribution& self, const py::object& index) { return mapped_of(self).attr("outline")(index); }
+py::object outline_of(Distribution& self, const py::object& index) {
+  return mapped_of(self).attr("outline")(as_integer(index, "index"));
+}
 
 py::object conform_to(Distribution& self, const py::object& vertices, const py::object& index) {
-  return mapped_of(self).attr("conform")(vertices, index).attr("points");
+  return mapped_of(self).attr("conform")(vertices, as_integer(index, "index")).attr("points");
 }
 
 const char* name_of(DistributionStop stop) {

@@ -37,14 +37,6 @@ Raises:
     InputError: lengths that differ, a negative shape, an angle that is not finite, a scale that is not positive.
 )";
 
-std::vector<bool> as_flags(const py::object& value, Index count) {
-  if (value.is_none()) return std::vector<bool>(count, false);
-  const py::array_t<bool> array = py::array_t<bool>::ensure(value);
-  if (!array || array.ndim() != 1) throw InputError("mirrored: wanted an (n,) array of booleans");
-  if (array.size() != count) throw InputError(message("mirrored has ", array.size(), " values, wanted ", count));
-  return std::vector<bool>(array.data(), array.data() + count);
-}
-
 Placements make_placements(const py::object& shape, const py::object& center, const py::object& angle,
                            const py::object& scale, const py::object& mirrored) {
   if (!py::isinstance<SurfacePoints>(center)) throw InputError("center: wanted a SurfacePoints");
@@ -53,7 +45,9 @@ Placements make_placements(const py::object& shape, const py::object& center, co
   const ArrayIn<Index> shapes = as_indices(shape, "shape");
   if (shapes.count != count) throw InputError(message("shape has ", shapes.count, " values, wanted ", count));
   const ArrayIn<double> angles = as_reals(angle, "angle", count), scales = as_reals(scale, "scale", count);
-  const std::vector<bool> flags = as_flags(mirrored, count);
+  const std::vector<std::uint8_t> flags =
+      mirrored.is_none() ? std::vector<std::uint8_t>(count, 0) : as_flags(mirrored, "mirrored");
+  if (std::ssize(flags) != count) throw InputError(message("mirrored has ", flags.size(), " values, wanted ", count));
   Placements result;
   for (Index i = 0; i < count; ++i) {
     if (shapes.values[i] < 0) throw InputError(message("shape: ", shapes.values[i], " at [", i, "] is negative"));
@@ -61,7 +55,7 @@ Placements make_placements(const py::object& shape, const py::object& center, co
       throw InputError(message("angle: ", angles.values[i], " at [", i, "] is not finite"));
     if (!(scales.values[i] > 0) || !std::isfinite(scales.values[i]))
       throw InputError(message("scale: ", scales.values[i], " at [", i, "] is not positive and finite"));
-    result.push_back({shapes.values[i], points[i], angles.values[i], scales.values[i], flags[i]});
+    result.push_back({shapes.values[i], points[i], angles.values[i], scales.values[i], flags[i] != 0});
   }
   return result;
 }
@@ -69,10 +63,9 @@ Placements make_placements(const py::object& shape, const py::object& center, co
 /// Returns those of an index, a slice, or an array of booleans or indices, as NumPy picks them.
 Placements picked(const Placements& self, const py::object& index) {
   const py::object numbers = py::module_::import("numpy").attr("arange")(self.size());
-  const py::object chosen = numbers[index];
+  const ArrayIn<Index> chosen = as_indices(py::module_::import("numpy").attr("atleast_1d")(numbers[index]), "index");
   Placements result;
-  for (const py::handle number : py::iter(py::module_::import("numpy").attr("atleast_1d")(chosen).attr("tolist")()))
-    result.push_back(self[py::cast<std::size_t>(number)]);
+  for (const Index number : chosen.values) result.push_back(self[static_cast<std::size_t>(number)]);
   return result;
 }
 

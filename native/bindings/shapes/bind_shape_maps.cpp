@@ -205,8 +205,8 @@ auto fields_of(Conformed& of) { return std::tie(of.points, of.positions); }
 
 std::vector<Vec3> as_vertices(const py::object& value) {
   std::vector<Vec3> result;
-  const py::array array = py::array::ensure(value);
-  if (array && array.ndim() == 2 && array.shape(1) == 2) {
+  const py::array array = as_array(value, "vertices", "shape (n, 3) of real numbers");
+  if (array.ndim() == 2 && array.shape(1) == 2) {
     const ArrayIn<double> flat = as_points2(value, "vertices");
     for (Index i = 0; i < flat.count; ++i) result.emplace_back(flat.values[2 * i], flat.values[2 * i + 1], 0);
     return result;

@@ -128,18 +128,17 @@ Raises:
 )";
 
 Shape from_mask(const py::object& image, const py::object& max_corners, bool centered, const py::object& job) {
-  py::array array = py::array::ensure(image);
-  if (array && array.ndim() == 3 && array.shape(2) == 4) array = array[py::make_tuple(py::ellipsis(), 3)];
-  const bool is_bytes = array && array.dtype().kind() == 'u' && array.itemsize() == 1;
-  const auto values = array ? py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array)
-                            : py::array_t<double, py::array::c_style | py::array::forcecast>();
-  if (!array || !values || values.ndim() != 2 || array.dtype().kind() == 'c')
-    throw InputError("image: wanted a (rows, columns) or (rows, columns, 4) array of reals");
-  std::vector<double> copy(values.data(), values.data() + values.size());
+  const char* const wanted = "a (rows, columns) or (rows, columns, 4) array of reals";
+  py::array array = as_array(image, "image", wanted);
+  if (array.ndim() == 3 && array.shape(2) == 4) array = array[py::make_tuple(py::ellipsis(), 3)];
+  const bool is_bytes = array.dtype().kind() == 'u' && array.itemsize() == 1;
+  if (array.dtype().kind() == 'b') array = array.attr("astype")("uint8");
+  const ArrayIn<double> values = as_rows(array, "image", wanted);
+  std::vector<double> copy(values.values.begin(), values.values.end());
   if (is_bytes)
     for (double& value : copy) value /= 255;
   const JobIn token(job);
-  const MaskImage mask{copy, static_cast<Index>(values.shape(0)), static_cast<Index>(values.shape(1))};
+  const MaskImage mask{copy, values.count, static_cast<Index>(values.array.shape(1))};
   const Index most = as_integer(max_corners, "max_corners");
   return without_gil([&] { return shape_from_mask(mask, most, centered, token); });
 }

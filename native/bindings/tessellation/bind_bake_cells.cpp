@@ -29,11 +29,11 @@ py::array list_of(const py::object& self) {
 /// (3 n, channels) reals, or none.
 ArrayIn<double> as_values(const py::object& value, Index corners, Index& channels) {
   if (value.is_none()) return {};
-  const py::array array = py::array::ensure(value);
-  if (!array || array.ndim() != 2 || array.shape(0) != corners)
-    throw InputError(message("values: wanted an array (", corners, ", channels), a row for each corner"));
-  channels = static_cast<Index>(array.shape(1));
-  return as_reals(array.attr("reshape")(-1), "values");
+  const std::string wanted = message("an array (", corners, ", channels) of real numbers, a row for each corner");
+  ArrayIn<double> rows = as_rows(value, "values", wanted);
+  if (rows.count != corners) throw InputError(message("values: wanted ", wanted, ", got ", rows.count, " rows"));
+  channels = static_cast<Index>(rows.array.shape(1));
+  return rows;
 }
 
 BakedCells bake(const py::object& cells, const py::object& uv, const py::object& faces, const py::object& values,

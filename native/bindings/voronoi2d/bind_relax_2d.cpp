@@ -144,7 +144,7 @@ Kitagawa, Q. Merigot, B. Thibert: Convergence of a Newton algorithm for semi-dis
 
 /// The raster as rows of doubles; keep `values` alive while the raster is used.
 struct DensityIn {
-  py::array_t<double, py::array::c_style> values;
+  ArrayIn<double> values;
   DensityRaster raster;
 };
 
@@ -171,13 +171,10 @@ DensityIn as_density(const py::object& value, const PlanarDomain& domain, Index 
   if (value.is_none()) return {};
   const py::object rows = PyCallable_Check(value.ptr()) ? sampled(value, domain, samples) : value;
   DensityIn result;
-  result.values = py::array_t<double, py::array::c_style>::ensure(rows);
-  PyErr_Clear();
-  if (!result.values || result.values.ndim() != 2 || result.values.size() == 0)
-    throw InputError("density: wanted shape (rows, columns) of real numbers, or a callable");
-  result.raster = {{result.values.data(), static_cast<std::size_t>(result.values.size())},
-                   static_cast<Index>(result.values.shape(0)),
-                   static_cast<Index>(result.values.shape(1))};
+  const char* const wanted = "shape (rows, columns) of real numbers, or a callable";
+  result.values = as_rows(rows, "density", wanted);
+  if (result.values.values.empty()) throw InputError(message("density: wanted ", wanted, ", got nothing"));
+  result.raster = {result.values.values, result.values.count, static_cast<Index>(result.values.array.shape(1))};
   return result;
 }
 

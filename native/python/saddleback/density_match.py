@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from saddleback._arrays import integer, reals
 from saddleback._saddleback import InputError, Mesh, Placements
 
 _Floats = NDArray[np.float64]
@@ -64,11 +65,12 @@ def density_match(mesh: Mesh, placements: Placements, density: ArrayLike, cells:
     -----
         O(F log F log cells).
     """
-    painted = np.asarray(density, dtype=np.float64)
+    painted = reals(density, "density")
     if painted.shape != (len(mesh.vertices),):
         raise InputError(f"density: wanted {len(mesh.vertices)} values, got an array of shape {painted.shape}")
     if not (np.isfinite(painted) & (painted >= 0)).all() or not painted.any():
         raise InputError("density: values must be finite, not negative and not all zero")
+    cells = integer(cells, "cells")
     if not 2 <= cells <= len(mesh.triangles):
         raise InputError(f"cells is {cells}, but must be 2 to the number of faces ({len(mesh.triangles)})")
     corners = mesh.vertices[mesh.triangles]

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from saddleback._arrays import reals
 from saddleback._saddleback import InputError, _write_file
 
 _Path = str | os.PathLike[str]
@@ -107,7 +108,7 @@ def write_curves(path: _Path, curves: Iterable[Any]) -> None:
     format_, is_compressed = _format(path)
     lines = []
     for number, curve in enumerate(curves):
-        points = np.asarray(getattr(curve, "points", curve), dtype=np.float64)
+        points = reals(getattr(curve, "points", curve), f"curves[{number}]")
         if points.ndim != 2 or points.shape[1] != 3:
             raise InputError(f"curves: wanted (n, 3) points, got {points.shape} at [{number}]")
         if len(points) > 1:
@@ -132,9 +133,9 @@ def _surface(mesh: Any) -> _Surface:
         return _Surface(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
     try:
         vertices, triangles = mesh
-        surface = _Surface(np.asarray(vertices, dtype=np.float64), np.asarray(triangles))
     except (TypeError, ValueError):
         raise InputError(f"mesh: wanted a Mesh, or vertices and triangles, got a {type(mesh).__name__}") from None
+    surface = _Surface(reals(vertices, "mesh: vertices"), np.asarray(triangles))
     for array, name in ((surface.vertices, "vertices"), (surface.triangles, "triangles")):
         if array.ndim != 2 or array.shape[1] != 3:
             raise InputError(f"mesh: wanted {name} (n, 3), got {array.shape}")
@@ -173,6 +174,8 @@ def _sorted(
         for name, values in given.items():
             if not re.fullmatch(r"[A-Za-z_][\w.:-]*", name, re.ASCII):
                 raise InputError(f"{argument}: {name!r} is no name; wanted a letter, then letters, digits and _ . : -")
+            if np.ma.is_masked(values):
+                raise InputError(f"{argument}: {name!r} has masked elements")
             array = np.asarray(values)
             if array.ndim not in (1, 2) or array.dtype.kind not in "biuf":
                 raise InputError(

@@ -4,6 +4,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from saddleback._arrays import real, reals
 from saddleback._saddleback import DirectionField, InputError, Mesh, vertex_normals
 
 _Floats = NDArray[np.float64]
@@ -104,6 +105,7 @@ def curvature_metric(mesh: Mesh, weight: float = 0.1) -> _Floats:
     """
     if mesh.is_intrinsic:
         raise InputError("mesh: normals are those of space, but this mesh has lengths of its own")
+    weight = real(weight, "weight")
     if not 0 <= weight < np.inf:
         raise InputError(f"weight: wanted 0 or more, got {weight}")
     normals = weight * np.sqrt(mesh.area) * vertex_normals(mesh.vertices, mesh.triangles)
@@ -132,7 +134,7 @@ def _vectors(mesh: Mesh, field: DirectionField | ArrayLike) -> _Floats:
         if field.symmetry == 4:
             raise InputError("field: of symmetry 4, along which of its two lines shall cells be long? Use 1 or 2")
         field = field.vectors
-    vectors = np.asarray(field, dtype=np.float64)
+    vectors = reals(field, "field")
     if vectors.shape != (mesh.face_count, 3):
         raise InputError(f"field: wanted shape ({mesh.face_count}, 3), got {vectors.shape}")
     if not np.isfinite(vectors).all():
@@ -149,7 +151,7 @@ def _vectors(mesh: Mesh, field: DirectionField | ArrayLike) -> _Floats:
 
 def _at_corners(mesh: Mesh, values: ArrayLike, name: str) -> _Floats:
     """(F, 3) values at the corners of one for all or of (V,), which must be positive."""
-    given = np.asarray(values, dtype=np.float64)
+    given = reals(values, name)
     if given.shape not in ((), (mesh.vertex_count,)):
         raise InputError(f"{name}: wanted one number or shape ({mesh.vertex_count},), got {given.shape}")
     everywhere = np.broadcast_to(given, mesh.vertex_count)

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from saddleback._arrays import integer, real
 from saddleback._saddleback import (
     CellPolygons,
     GeodesicVoronoi,
@@ -116,6 +117,10 @@ def super_patches(
     """
     if (count is None) == (error is None):
         raise InputError("count, error: give either one of them")
+    count = count if count is None else integer(count, "count")
+    error, sharp = error if error is None else real(error, "error"), real(sharp, "sharp")
+    if not 0 <= sharp <= math.pi:
+        raise InputError(f"sharp: wanted radians from 0 to pi, got {sharp}")
     if error is not None and not 0 < error < math.inf:
         raise InputError(f"error: wanted a positive length, got {error}")
     job = job or Job()

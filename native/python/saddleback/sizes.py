@@ -4,6 +4,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from saddleback._arrays import real, reals
 from saddleback._saddleback import InputError, Mesh, principal_curvatures
 
 _Floats = NDArray[np.float64]
@@ -30,7 +31,7 @@ def blend_by_distance(distances: ArrayLike, values: ArrayLike, power: float = 2.
 
     After [shepard1968], with geodesic distances.
     """
-    far, known = np.asarray(distances, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    far, known, power = reals(distances, "distances"), reals(values, "values"), real(power, "power")
     if far.ndim != 2 or known.shape != far.shape[:1] or not len(known):
         raise InputError(f"distances: wanted one row for each of the values, got {far.shape} and {known.shape}")
     if not np.isfinite(known).all():
@@ -64,7 +65,8 @@ def ramp_by_distance(distances: ArrayLike, at: float, beyond: float, reach: floa
     ------
         InputError: a negative distance, values that are not finite, a reach that is not above 0.
     """
-    far = np.asarray(distances, dtype=np.float64)
+    far, reach = reals(distances, "distances"), real(reach, "reach")
+    at, beyond = real(at, "at"), real(beyond, "beyond")
     if not (far >= 0).all():
         raise InputError(f"distances: {far[~(far >= 0)][0]} at [{np.flatnonzero(~(far >= 0))[0]}] is no distance")
     if not (np.isfinite(at) and np.isfinite(beyond)):
@@ -90,6 +92,7 @@ def density_by_curvature(mesh: Mesh, range_: float = 16.0, contrast: float = 1.0
     ------
         InputError: a range below 1, a contrast that is not finite.
     """
+    range_, contrast = real(range_, "range_"), real(contrast, "contrast")
     if not (range_ >= 1 and np.isfinite(range_)):
         raise InputError(f"range_ is {range_}, but must be at least 1 and finite")
     if not np.isfinite(contrast):

@@ -399,6 +399,7 @@ CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const 
 std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                                            std::span<const Index> triangle_cell, double limit) {
   check_cells(triangles, triangle_cell);
+  if (!(limit >= 0)) throw InputError(message("limit: wanted a length of 0 or more, got ", limit));
   BoundarySearch search(vertices, triangles, triangle_cell);
   search.spread(limit);
   return search.distances();
