@@ -91,7 +91,7 @@ def check_cells_without_places(mesh: sb.Mesh, rng: Random) -> None:
         np.testing.assert_allclose(there.areas, here.areas, rtol=0, atol=1e-5 * mesh.area)
 
 
-@guards("geodesic_voronoi", unsettled="parts run out where sites are as near over wide areas, or two ways to one are")
+@guards("geodesic_voronoi")
 def check_borders_are_nearest(mesh: sb.Mesh, rng: Random) -> None:
     """To no point of a border is another site nearer by more than 1e-5 of the size of a cell, by exact distances."""
     sites = random_sites(mesh, rng)

@@ -45,6 +45,9 @@ def test_random_input_meets_the_truths():
         ("cells_exact.check_dual_edges_are_ways", 4668),  # straight to the place beside the site, on another sheet
         ("cells_exact.check_dual_edges_are_ways", 8006),  # by a corner of the boundary, straight over nothing
         ("cells.exact_cells_of_places", 1000000149555),  # a spike of needles: three gigabytes of windows went round it
+        ("cells_exact.check_borders_are_nearest", 1000020346635),  # a site that lags little all along another's ridge
+        ("cells_exact.check_borders_are_nearest", 1000020354905),
+        ("cells_exact.check_cells_without_places", 1000020332442),
         ("cells_exact.check_borders_are_nearest", 612),  # straight on at a corner, another way beside it
         ("disks.inset_disks", 1000020335261),  # a twin hidden by a weight as large as their distance
         ("surfaces.graphs_without_places", 1000020262499),  # far ends of thin tubes, near each other in space

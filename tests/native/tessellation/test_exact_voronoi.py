@@ -13,6 +13,7 @@ from tests import meshes
 from tests.native.cancelling import check_progress_and_cancel
 from tests.native.cell_checks import check, lag, points_of_cells
 from tests.native.exact import random_points
+from tests.truth.families import stretched
 
 Chart = Callable[[np.ndarray], np.ndarray]  # from places in space to what the closed form is told
 Distance = Callable[[np.ndarray, np.ndarray], np.ndarray]  # from one of those to several
@@ -378,6 +379,17 @@ def test_sites_that_tie_along_whole_edges(arrays: meshes.Arrays, vertices: list[
     distances = np.array([sb.ExactField(mesh, [vertex]).distance_to(points) for vertex in vertices])
     own = distances[split.triangle_cell[is_wide], np.arange(len(points))]
     assert (own - distances.min(axis=0)).max() < 1e-5 * np.sqrt(mesh.area / len(vertices))
+
+
+@pytest.mark.parametrize(("vertices", "most"), [([33, 36], 100), ([54, 20], 100), ([36, 53, 16], 5000)])
+def test_ties_along_the_edges_of_a_frame_take_few_points(vertices: list[int], most: int) -> None:
+    """Behind a corner both sites are as far along a whole edge: 20 to 80 times as many bits told rounding apart."""
+    cell = np.stack(np.meshgrid(*3 * [np.arange(3)], indexing="ij"), axis=-1)
+    corners, triangles = meshes.voxels((cell % 2 == 1).sum(axis=-1) <= 1)
+    mesh = sb.Mesh(stretched(corners, 0.44), triangles)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), vertices, exact=True)
+    check(mesh, cells)
+    assert len(cells.edge_points) < most
 
 
 def test_progress_rises_and_cancel_is_quick() -> None:

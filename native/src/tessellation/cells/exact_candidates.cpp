@@ -37,6 +37,19 @@ bool is_beaten(const FaceCandidate& candidate, const std::vector<FaceCandidate>&
   });
 }
 
+double sum(const std::array<double, 3>& x) { return x[0] + x[1] + x[2]; }
+
+/// Tells whether a candidate owns something of its part that is not owed to rounding alone. Where two sites are as far
+/// along a whole edge, or in a whole part, another is no farther at any corner, but for rounding, and nearer in all.
+bool is_rival(const FaceCandidate& candidate, const std::vector<FaceCandidate>& candidates) {
+  return std::ranges::none_of(candidates, [&](const FaceCandidate& other) {
+    for (int i = 0; i < 3; ++i)
+      if (!(other.squared_distance[i] <= (1 + k_rounding) * candidate.squared_distance[i])) return false;
+    return std::pair(sum(other.squared_distance), other.site) <
+           std::pair(sum(candidate.squared_distance), candidate.site);
+  });
+}
+
 /// The entry of a source in a list by source; null where there is none.
 template <class List>
 auto find_source(List& list, Index source) {
@@ -315,12 +328,12 @@ bool ExactParts::is_right(const FaceRefinement::Part& part, Look& look) const {
   find_ways_inside(part, look);
   for (std::size_t i = 0; i < samples.size(); ++i)
     find_ways(look.ways(), place_in(part, samples[i]), look.at_samples[i]);
-  const auto is_rival = [&](const Way& way) {
+  const auto is_of_rival = [&](const Way& way) {
     const auto candidate = std::ranges::find(candidates, way.source, &FaceCandidate::site);
-    return candidate != candidates.end() && !is_beaten(*candidate, candidates);
+    return candidate != candidates.end() && is_rival(*candidate, candidates);
   };
   const bool bends = std::ranges::any_of(look.at_samples, [&](const Ways& ways) {
-    return std::ranges::any_of(ways, [&](const Way& way) { return way.before > 0 && is_rival(way); });
+    return std::ranges::any_of(ways, [&](const Way& way) { return way.before > 0 && is_of_rival(way); });
   });
   if (bends && std::ranges::max(part.length) <= whole / 2) return true;
   const double tolerance = bends ? whole : k_unbent * whole;
@@ -342,9 +355,9 @@ void ExactParts::find_ways_inside(const FaceRefinement::Part& part, Look& look) 
 bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const Look& look, double tolerance) const {
   const std::vector<FaceCandidate>& candidates = look.candidates;
   const auto is_seen = [&](const FaceCandidate& candidate) {
-    return is_beaten(candidate, candidates) || std::ranges::all_of(look.at_samples, [&](const Ways& ways) {
-             return find_source(ways, candidate.site) != nullptr;
-           });
+    return !is_rival(candidate, candidates) || std::ranges::all_of(look.at_samples, [&](const Ways& ways) {
+      return find_source(ways, candidate.site) != nullptr;
+    });
   };
   if (std::ranges::all_of(candidates, is_seen)) return true;
   for (const Vec3& x : places_by_bisectors(candidates, stage_)) {
@@ -362,43 +375,50 @@ bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const Look
 }
 
 /// Looks at what the sites' distances at the samples are more than the corners say. Among sites that own something
-/// there it must be the same: what it is moves no bisector. Others may be behind by less, but by no more than half of
-/// what they are farther away. `straight`: the ways by which the former go, else each by its shortest.
+/// there it must be the same: what it is moves no bisector. Others may be behind the nearest by less than at any
+/// corner, but by no less than half of that. `straight`: the ways by which the former go, else each by its shortest.
 bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Look& look,
                       const Ways* straight, double tolerance) const {
-  std::vector<std::uint8_t> is_rival;
+  std::vector<std::uint8_t> rivals;
   for (const FaceCandidate& candidate : candidates) {
     stage_.check();  // of many in a part each is compared with each
-    is_rival.push_back(!is_beaten(candidate, candidates));
+    rivals.push_back(is_rival(candidate, candidates));
   }
   // Corners are samples, too, where more is told of a site than its distance: what the others see lies between.
   if (!straight)
     for (const std::span<const Known> corner : corners_of(part))
       for (std::size_t i = 0; i < candidates.size(); ++i)
         if (const Known* const known = find_source(corner, candidates[i].site);
-            is_rival[i] && known && std::abs(known->excess) > tolerance)
+            rivals[i] && known && std::abs(known->excess) > tolerance)
           return false;
   const std::array<Vec3, 4> samples = samples_of_part();
+  std::array<double, 4> of_nearest;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Vec3& x = samples[s];
-    double first = k_infinity, least = k_infinity, most = -k_infinity;
+    double least = k_infinity, most = -k_infinity;
+    of_nearest[s] = k_infinity;
+    for (const Way& way : look.at_samples[s]) of_nearest[s] = std::min(of_nearest[s], way.distance);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Way* const way = find_source(straight ? *straight : look.at_samples[s], candidates[i].site);
-      if (straight && is_rival[i] && !way) return false;
-      if (!is_rival[i] || !way) continue;
+      if (straight && rivals[i] && !way) return false;
+      if (!rivals[i] || !way) continue;
       const double distance =
           straight ? way->straight_to(field_.place_of({part.face, place_in(part, x)})) : way->distance;
       const double expected = distance_at(part, candidates[i], x);
-      first = std::min(first, expected);
       least = std::min(least, distance - expected);
       most = std::max(most, distance - expected);
     }
     if (most - least > tolerance) return false;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (rivals[i]) continue;
+    double behind = k_infinity;
+    for (int corner = 0; corner < 3; ++corner)
+      behind =
+          std::min(behind, std::sqrt(candidates[i].squared_distance[corner]) - nearest(part.corner[corner]).distance);
+    for (std::size_t s = 0; s < samples.size(); ++s) {
       const Way* const way = find_source(look.at_samples[s], candidates[i].site);
-      if (is_rival[i] || !way) continue;
-      const double expected = distance_at(part, candidates[i], x), more = way->distance - expected;
-      if (most - more > std::max(tolerance, (expected - first) / 2)) return false;
+      if (way && way->distance - of_nearest[s] < std::min(behind - tolerance, behind / 2)) return false;
     }
   }
   return true;
@@ -443,7 +463,7 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, Look& look, double
   std::erase_if(ways, [&](const Way& way) {
     stage_.check();
     const auto candidate = std::ranges::find(look.candidates, way.source, &FaceCandidate::site);
-    return is_beaten(*candidate, look.candidates);
+    return !is_rival(*candidate, look.candidates);
   });
   if (!explain(part, look, ways, samples_of_part())) return false;
   std::array<Distances, 3>& told = look.told;
