@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -35,6 +36,8 @@ from .surfaces.mirrors import Mirror
 from .surfaces.quaternions import quaternions_of, turned
 
 Value = TypeVar("Value", bound=np.generic)
+NEEDED = re.compile(r"count: the curves .*need (\d+) sites")  # what the library says where too few sites are asked for
+MOST_TRIES = 8  # with more sites shorter lines count
 
 
 def halved(request: TessellateRequest, mirror: Mirror) -> TessellateRequest:
@@ -76,7 +79,7 @@ def shapes_halved(request: DistributeRequest, mirror: Mirror) -> DistributeReque
 
 def tessellate(request: TessellateRequest, mirror: Mirror, progress: Progress) -> CellsResult:
     """Cells of both sides. Those whose sites are on the plane lie across it. Raises as `runs.tessellate`."""
-    result = runs.tessellate(request, progress)
+    result = _on_half(request, progress)
     count = result.count
     on = mirror.is_on(result.sites_position)
     twins = np.arange(count, dtype=np.int32)
@@ -104,6 +107,26 @@ def tessellate(request: TessellateRequest, mirror: Mirror, progress: Progress) -
         dual=None if result.dual is None else _dual(result.dual, mirror, progress),
         shell=None if result.shell is None else _shell(result.shell, mirror),
     )
+
+
+def _on_half(request: TessellateRequest, progress: Progress) -> CellsResult:
+    """Cells of the half: where fewer are asked for than the line at the plane needs, of which the artist knows nothing,
+    as many as it needs, and a note.
+    """
+    settings = request.settings
+    for _ in range(MOST_TRIES):
+        try:
+            result = runs.tessellate(replace(request, settings=settings), progress)
+        except native.load().InputError as error:
+            needed = NEEDED.match(str(error))
+            if needed is None:
+                raise
+            settings = replace(settings, count=int(needed[1]))
+            continue
+        if settings is not request.settings:
+            progress.note(f"'{request.surface.name}': as few cells as X Mirror allows, since some lie across the plane")
+        return result
+    return runs.tessellate(replace(request, settings=settings), progress)
 
 
 def distribute(request: DistributeRequest, mirror: Mirror, progress: Progress) -> DistributeResult:

@@ -97,6 +97,17 @@ def test_cells_lie_across_the_plane_without_a_seam():
     assert in_plane and np.mean([len(faces[key]) == 2 for key in in_plane]) > 0.9  # the others are gaps' ends
 
 
+@pytest.mark.parametrize("make", ["uv_sphere", "monkey", "torus"])
+@pytest.mark.parametrize("count", [1, 4])
+def test_of_too_few_cells_there_are_as_many_as_the_plane_needs(make, count, capfd):
+    getattr(bpy.ops.mesh, f"primitive_{make}_add")()
+    item = bpy.context.active_object
+    bpy.ops.saddleback.tessellate(count=count, mirror_x=True, make_centers=True, k=30)
+    made = bpy.data.objects[f"{item.name} Centers"].data
+    assert is_mirrored(made) and count < len(made.vertices) <= 12
+    assert "as few cells as X Mirror allows" in capfd.readouterr().out
+
+
 def test_the_remesh_is_whole_and_mirrored():
     item = creature()
     bpy.ops.saddleback.tessellate(count=400, mirror_x=True, make_edges=False, make_dual=True, iterations=20, k=30)
