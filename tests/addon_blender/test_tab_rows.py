@@ -27,6 +27,7 @@ class Layout:
 
     def __init__(self, drawn):
         self.__dict__["drawn"] = drawn
+        self.__dict__["labels"] = []
 
     def __setattr__(self, name, value):
         pass
@@ -49,10 +50,10 @@ class Layout:
 
     popover = template_list
 
-    def label(self, **_):
-        pass
+    def label(self, text="", **_):
+        self.labels.append(text)
 
-    progress = separator = menu = label
+    progress = separator = menu = template_list
 
     def row(self, **_):
         return self
@@ -62,8 +63,11 @@ class Layout:
 
 def drawn_by(panel, is_opened=False):
     """Settings that a panel draws, its header's switch among them, as it is at first or opened by hand."""
-    drawn = []
-    layout = Layout(drawn)
+    return draw(panel, is_opened).drawn
+
+
+def draw(panel, is_opened=False):
+    layout = Layout([])
     pretended = SimpleNamespace(layout=layout, split_layout=lambda _: layout, switch=getattr(panel, "switch", ""))
     context = SimpleNamespace(
         window_manager=bpy.context.window_manager,
@@ -77,7 +81,7 @@ def drawn_by(panel, is_opened=False):
     is_closed = "DEFAULT_CLOSED" in getattr(panel, "bl_options", set()) and hasattr(panel, "bl_parent_id")
     if is_opened or not is_closed or panel.bl_parent_id == "SADDLEBACK_PT_main":
         panel.draw(pretended, context)
-    return drawn
+    return layout
 
 
 @pytest.mark.parametrize("name", list(PROPERTIES))
@@ -170,6 +174,24 @@ def test_the_redo_panel_has_six_rows_at_most_in_the_unit_that_is_chosen(name):
             assert not any(key.endswith("_share") for key in rows) or unit == "RELATIVE"
             if not outputs:
                 assert not any(key.startswith(("edge_", "rib_", "isoline_", "streamline_")) for key in rows)
+
+
+@pytest.mark.parametrize(("look", "words"), [("STUDS", "416 shapes"), ("BANDS", "23 isolines"), ("PANELS", "")])
+def test_what_a_look_made_stands_in_a_panel_that_is_open(look, words):
+    sphere()
+    bpy.ops.saddleback.apply_look(look=look)
+    told = " ".join(draw(panels.SADDLEBACK_PT_main).labels)
+    assert words in told and "cells" not in told
+    below = next(panel for panel in panels.CLASSES if panel.__name__ == "SADDLEBACK_PT_tessellate")
+    assert ("200 cells" in " ".join(draw(below, True).labels)) == (look == "PANELS")
+
+
+def test_what_stippling_an_image_made_stands_there_too(tmp_path):
+    image = bpy.data.images.new("Spot", 8, 8)
+    image.filepath_raw, image.file_format = str(tmp_path / "spot.png"), "PNG"
+    image.save()
+    bpy.ops.saddleback.stipple_image(filepath=image.filepath_raw, count=30)
+    assert "30 " in " ".join(draw(panels.SADDLEBACK_PT_main).labels)
 
 
 def test_evenness_stands_for_iterations_annealing_and_starts():

@@ -52,7 +52,7 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         layer_rows.draw_layers(column, item)
         layer_rows.draw_region(column, item)
         live_rows.draw_live(layout, context, item)
-        look_rows.draw_looks(layout, item)
+        look_rows.draw_looks(layout, context, item)
         if sum(other.type == "MESH" for other in context.view_layer.objects.selected) > 1:
             layout.prop(context.window_manager, "saddleback_all_selected")
         row = layout.row()
