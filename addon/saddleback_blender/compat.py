@@ -187,6 +187,27 @@ def shade_smooth_by_angle(mesh: bpy.types.Mesh, angle: float) -> None:
         mesh.auto_smooth_angle = angle
 
 
+def shading(data: bpy.types.Mesh | bpy.types.Curve) -> str:
+    """Tells how faces are drawn, "" where some are smooth and some are not: smooth, creased, at which angle."""
+    parts = data.splines if isinstance(data, bpy.types.Curve) else data.polygons
+    smooth = np.zeros(len(parts), bool)
+    parts.foreach_get("use_smooth", smooth)
+    if not len(smooth) or smooth.any() != smooth.all():
+        return ""
+    return f"{smooth[0]} {getattr(data, 'use_auto_smooth', False)} {getattr(data, 'auto_smooth_angle', 0.0):.6f}"
+
+
+def set_shading(data: bpy.types.Mesh | bpy.types.Curve, told: str) -> None:
+    """Draws all faces as `shading` told of others; "" changes nothing."""
+    if not told or told == shading(data):
+        return
+    is_smooth, is_creased, angle = told.split()
+    parts = data.splines if isinstance(data, bpy.types.Curve) else data.polygons
+    parts.foreach_set("use_smooth", np.full(len(parts), is_smooth == "True"))
+    if hasattr(data, "use_auto_smooth"):
+        data.use_auto_smooth, data.auto_smooth_angle = is_creased == "True", float(angle)
+
+
 def copy_auto_smooth(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
     """Gives a mesh the angle at which another is creased; from 4.1 on creases are edges, and there is no angle."""
     if hasattr(mesh, "use_auto_smooth"):

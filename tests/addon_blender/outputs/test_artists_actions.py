@@ -257,3 +257,35 @@ def test_linked_duplicates_and_empty_slots_have_a_ground_too():
     assert other.material_slots[0].material.name == "Saddleback Panels Ground"
     bpy.ops.saddleback.clear()
     assert other.material_slots[0].link == "DATA" and not bpy.data.materials
+
+
+@pytest.mark.parametrize("output", ["make_cells", "make_dual", "make_edges"])
+def test_how_an_artist_draws_an_output_stays_with_the_next_run(output):
+    """Shade Smooth or Flat, in Blenders before 4.1 by an angle, properties of one's own and a bevel went with it."""
+    item = sphere()
+    options = {"iterations": 2, "k": 30, "make_edges": False, output: True, "edge_kind": "CURVE"}
+    bpy.ops.saddleback.tessellate(count=20, **options)
+    made = find_output(item, output.removeprefix("make_"))
+
+    def parts():
+        return made.data.splines if made.type == "CURVE" else made.data.polygons
+
+    before = {part.use_smooth for part in parts()}
+    for wanted in (not before.pop(), not before):
+        for part in parts():
+            part.use_smooth = wanted
+        if hasattr(made.data, "use_auto_smooth"):
+            made.data.use_auto_smooth, made.data.auto_smooth_angle = wanted, 0.5
+        made.data["price"], made.data["tags"], made.data["of"] = 12, [1.0, 2.0], {"a": item}
+        made.data.id_properties_ui("price").update(min=3, description="In coins")
+        if made.type == "CURVE":
+            made.data.bevel_depth, made.data.use_fill_caps = 0.01, True
+        for count in (23, 26):
+            bpy.ops.saddleback.tessellate(count=count, **options)
+            assert find_output(item, made["saddleback_role"]) == made and {p.use_smooth for p in parts()} == {wanted}
+            if hasattr(made.data, "use_auto_smooth"):
+                assert (made.data.use_auto_smooth, made.data.auto_smooth_angle) == (wanted, pytest.approx(0.5))
+            assert (made.data["price"], list(made.data["tags"]), made.data["of"]["a"]) == (12, [1.0, 2.0], item)
+            assert made.data.id_properties_ui("price").as_dict()["description"] == "In coins"
+            if made.type == "CURVE":
+                assert made.data.bevel_depth == pytest.approx(0.01) and made.data.use_fill_caps

@@ -19,6 +19,8 @@ from .out_attributes import recorded
 
 CONTENT = "saddleback_content"  # on outputs: a hash of the data that we gave it
 LAYERS = "saddleback_layers"  # on outputs: the names of the layers that it had then, one a line
+SHADING = "saddleback_shading"  # on outputs: how its faces were drawn then
+CHOSEN = "saddleback_chosen_shading"  # on outputs: how an artist wants them to be drawn
 # Attributes that Blender makes by itself, or of what it kept otherwise in other versions.
 OF_BLENDER = {
     "position", "material_index", "sharp_face", "sharp_edge", "crease_vert", "crease_edge", "bevel_weight_vert",
@@ -33,6 +35,9 @@ def stamp(items: list[bpy.types.Object]) -> None:
     """Writes on outputs that are new what their data are."""
     for item in items:
         if CONTENT not in item:
+            rollback.remember_keys(item, SHADING)
+            compat.set_shading(item.data, str(item.get(CHOSEN, "")))
+            item[SHADING] = compat.shading(item.data)
             _note(item)
 
 
@@ -50,6 +55,14 @@ def accept(item: bpy.types.Object) -> None:
 def _note(item: bpy.types.Object) -> None:
     rollback.remember_keys(item, CONTENT, LAYERS)
     item[CONTENT], item[LAYERS] = _content(item), "\n".join(sorted(_layers(item)))
+
+
+def keep_shading(item: bpy.types.Object) -> None:
+    """Notes how an artist wants the faces of an output to be drawn, where that is not as we gave it."""
+    shading = compat.shading(item.data)
+    if shading and shading != item.get(SHADING, shading):
+        rollback.remember_keys(item, CHOSEN)
+        item[CHOSEN] = shading
 
 
 def keep_data(item: bpy.types.Object) -> None:
@@ -76,7 +89,7 @@ def keep_object(item: bpy.types.Object) -> None:
 
 def make_ordinary(item: bpy.types.Object) -> None:
     """Takes off an output all that makes it one."""
-    keys = (ROLE, NAME, PLACE, LOCAL, MARKS, OWN_MARKS, MATERIALS, CONTENT, LAYERS, SOURCE, LAYER)
+    keys = (ROLE, NAME, PLACE, LOCAL, MARKS, OWN_MARKS, MATERIALS, CONTENT, LAYERS, SHADING, CHOSEN, SOURCE, LAYER)
     rollback.remember_keys(item, *keys)
     for key in keys:
         if key in item:

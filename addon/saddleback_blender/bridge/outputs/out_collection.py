@@ -9,6 +9,7 @@ kept, since a pointer in a custom property would keep a deleted object in the fi
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 
 import bpy
@@ -34,7 +35,7 @@ from ..tokens import (
     source_token,
     token_of,
 )
-from .hand_edits import CONTENT, is_edited, keep_data, keep_object, make_ordinary
+from .hand_edits import CONTENT, is_edited, keep_data, keep_object, keep_shading, make_ordinary
 from .out_attributes import clear_attributes, forget_layer_names
 from .rest_places import forget_rest
 
@@ -47,6 +48,11 @@ COLLECTION_NAME = "Saddleback"
 HAIR = 5e-4  # of the longest side of the mesh: what is enough for a surface to hide another one
 # Of the role of an object that keeps where the points of a curve stand.
 KEEPER_ENDING = " anchors"
+# Of a curve: what an artist makes of our lines.
+CURVE_SETTINGS = (
+    "bevel_mode", "bevel_depth", "bevel_resolution", "bevel_object", "extrude", "offset", "taper_object",
+    "use_fill_caps", "fill_mode", "twist_mode", "twist_smooth",
+)  # fmt: skip
 SURFACE_ROLE = "surface"  # of the copy that has the attributes of all layers
 
 
@@ -92,6 +98,7 @@ def replace_object(
         rollback.remember(item, "matrix_basis", "matrix_parent_inverse", "parent_type", "parent", "data")
         rollback.remember_keys(item, MATERIALS, SOURCE, PLACE, LOCAL, MARKS, OWN_MARKS, CONTENT)
         keep_data(item)
+        keep_shading(item)
         if CONTENT in item:
             del item[CONTENT]
         _show_again(item)
@@ -304,7 +311,8 @@ def _names(data: bpy.types.ID) -> list[str]:
 
 
 def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
-    """Gives the object new data; materials that the artist put in the place of ours, or added, stay.
+    """Gives the object new data; materials that the artist put in the place of ours, or added, stay, and so do custom
+    properties and a curve's bevel.
 
     Slots are filled one by one: `materials.clear` would forget which faces show which.
     """
@@ -317,11 +325,23 @@ def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
         data.materials[slot] = material
     for material in old.materials[len(given) :]:
         data.materials.append(material)
+    _keep_settings(old, data)
     item.data = data
     if old.users == 0:
         rollback.remember_name(old)
         old.name = FORMER
     rollback.when_written(partial(_remove_data, old))
+
+
+def _keep_settings(old: bpy.types.ID, data: bpy.types.ID) -> None:
+    """Gives new data what is none of ours on the old: custom properties, and how thick a curve is."""
+    for key, value in old.items():
+        if not key.startswith("saddleback") and key not in data:
+            data[key] = value.to_dict() if hasattr(value, "to_dict") else value
+            with suppress(TypeError):  # of kinds that have no range
+                data.id_properties_ui(key).update_from(old.id_properties_ui(key))
+    for name in CURVE_SETTINGS if isinstance(data, bpy.types.Curve) else ():
+        setattr(data, name, getattr(old, name))
 
 
 def _counted(names: list[str]) -> list[tuple[str, int]]:
