@@ -587,6 +587,21 @@ def test_bad_curves() -> None:
             sb.centroidal_voronoi(graph, **arguments)
 
 
+def test_a_part_that_a_held_site_leaves_bare_is_told() -> None:
+    """Vertices without a label were counted before the list of labels began."""
+    mesh = sb.Mesh(*meshes.two_components())
+    first, other = (np.flatnonzero(mesh.components == part)[:4] for part in (0, 1))
+    ring = mesh.triangles[np.isin(mesh.triangles, other[0]).any(axis=1)][0]
+    curve = sb.SurfaceCurve(mesh, ring[:2])
+    graph = sb.SaddleVertexGraph(mesh)
+    with pytest.raises(
+        sb.InputError, match="sites: once held ones are on their curves, 1 of the mesh's 2 separate parts"
+    ):
+        sb.centroidal_voronoi(graph, sites=[first[0], *other], curves=[curve], held=[0, -1, -1, -1, -1])
+    kept = sb.centroidal_voronoi(graph, sites=[*first, *other], curves=[curve], held=[0, *[-1] * 7], max_iterations=2)
+    assert (kept.cells.areas > 0).all()
+
+
 def test_many_cells_in_two_faces_take_little_longer_than_in_many() -> None:
     square = np.array([(0.0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]), np.array([(0, 1, 2), (0, 2, 3)])
     spent = []

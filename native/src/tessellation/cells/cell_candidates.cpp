@@ -11,7 +11,7 @@
 namespace saddleback {
 namespace {
 
-void check_components(const Mesh& mesh, const SurfacePoints& sites) {
+void check_components(const Mesh& mesh, const SurfacePoints& sites, const char* when) {
   std::vector<std::uint8_t> has_site(mesh.component_count(), 0);
   for (const SurfacePoint& site : sites) has_site[mesh.component_of(mesh.triangles()[site.face][0])] = 1;
   const auto bare = static_cast<Index>(std::find(has_site.begin(), has_site.end(), 0) - has_site.begin());
@@ -19,7 +19,7 @@ void check_components(const Mesh& mesh, const SurfacePoints& sites) {
   Index vertex = 0;
   while (mesh.component_of(vertex) != bare) ++vertex;
   const auto count = std::count(has_site.begin(), has_site.end(), 0);
-  throw InputError(message("sites: ", count, " of the mesh's ", mesh.component_count(), " separate parts ",
+  throw InputError(message("sites: ", when, count, " of the mesh's ", mesh.component_count(), " separate parts ",
                            count == 1 ? "has" : "have", " no site, first the part of vertex ", vertex,
                            "; put at least one site on every part"));
 }
@@ -32,10 +32,10 @@ std::vector<VerticesBeside> one_for_each_thread(CellLogMaps& maps, int threads) 
 
 }  // namespace
 
-void check_sites(const Mesh& mesh, const SurfacePoints& sites) {
+void check_sites(const Mesh& mesh, const SurfacePoints& sites, const char* when) {
   if (sites.empty()) throw InputError("sites: wanted at least one site, got none");
   check_surface_points(mesh, sites, "sites");
-  check_components(mesh, sites);
+  check_components(mesh, sites, when);
 }
 
 CellCandidates::CellCandidates(const SaddleVertexGraph& graph, const VertexRings& rings, CellLengths lengths,

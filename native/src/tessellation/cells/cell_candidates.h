@@ -11,8 +11,9 @@
 
 namespace saddleback {
 
-/// \throw InputError naming the first offender: no sites, a site off the mesh, a component without a site.
-void check_sites(const Mesh& mesh, const SurfacePoints& sites);
+/// \throw InputError naming the first offender: no sites, a site off the mesh, a component without a site (`when`
+/// begins its message).
+void check_sites(const Mesh& mesh, const SurfacePoints& sites, const char* when = "");
 
 /// Candidates by the labels and distances of the graph: the labels of a face's corners, and what CandidateSpread finds.
 ///

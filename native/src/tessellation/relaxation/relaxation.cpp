@@ -17,6 +17,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
   for (const Index site : options.constraints.fixed) is_fixed_[site] = 1;
   SurfacePoints start = sites;
   std::vector<double> along = held_.bring(start, stage);
+  if (held_.any()) check_sites(graph.mesh(), start, "once held ones are on their curves, ");
   cells_->match(start);
   state_ = evaluate(std::move(start), std::move(along), stage);
   while (revive_empty_cells(stage)) {}
