@@ -30,14 +30,20 @@ Index component_of(const Mesh& mesh, const SurfacePoint& place) {
   return mesh.component_of(mesh.triangles()[place.face][0]);
 }
 
+double mean_of(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 /// Components in which there is no place are held at the mean in one vertex.
 struct Held {
   std::vector<double> stiffness, target;
+  std::vector<bool> has_place;  ///< per component
 };
 Held held_vertices(const Mesh& mesh, const SurfacePoints& places, double mean) {
-  Held result{std::vector<double>(mesh.vertex_count(), 0.0), std::vector<double>(mesh.vertex_count(), 0.0)};
-  std::vector<bool> has_place(mesh.component_count(), false);
-  for (const SurfacePoint& place : places) has_place[component_of(mesh, place)] = true;
+  Held result{std::vector<double>(mesh.vertex_count(), 0.0), std::vector<double>(mesh.vertex_count(), 0.0),
+              std::vector<bool>(mesh.component_count(), false)};
+  for (const SurfacePoint& place : places) result.has_place[component_of(mesh, place)] = true;
+  std::vector<bool> has_place = result.has_place;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (has_place[mesh.component_of(v)]) continue;
     has_place[mesh.component_of(v)] = true;
@@ -64,7 +70,10 @@ std::vector<double> spread_harmonic(const Mesh& mesh, const SurfacePoints& place
   SpringSystem<double> system =
       spring_system(vertex_graph(mesh, surface_connection(mesh, stage)), held.stiffness, held.target);
   const MultigridSolver<double> solver(std::move(system.matrix), stage.part(0, 0.2));
-  return solver.solve(system.right, {}, k_accuracy, stage.part(0.2, 1));
+  std::vector<double> result = solver.solve(system.right, {}, k_accuracy, stage.part(0.2, 1));
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    if (!held.has_place[mesh.component_of(v)]) result[v] = mean;
+  return result;
 }
 
 /// Splines as sums of what one place alone bends the surface's values by. In each component these are
@@ -186,11 +195,20 @@ std::vector<double> spread_values(const Mesh& mesh, const SurfacePoints& places,
   const JobStage stage(options.job, "Spreading values");
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double low = *least, high = *most;
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  std::vector<double> result = options.method == SpreadMethod::harmonic
-                                   ? spread_harmonic(mesh, places, values, mean, stage)
-                                   : Splines(mesh, places, stage).through(values, mean);
+  std::vector<double> result;
+  if (options.method == SpreadMethod::harmonic) {
+    // The solver's accuracy is a share of the values: those it has are shares of the range, however far that is from
+    // zero. Halves, for it may be more than the largest number.
+    const double half = high > low ? high / 2 - low / 2 : 1;
+    std::vector<double> shares;
+    for (const double value : values) shares.push_back((value / 2 - low / 2) / half);
+    result = spread_harmonic(mesh, places, shares, mean_of(shares), stage);
+    for (double& value : result) value = 2 * (low / 2 + half * value);
+  } else {
+    result = Splines(mesh, places, stage).through(values, mean_of(values));
+  }
   for (double& value : result) value = std::clamp(value, low, high);
+  stage.update(1);
   return result;
 }
 

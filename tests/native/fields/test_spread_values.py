@@ -67,6 +67,15 @@ def test_a_long_strip_beside_it_does_not_loosen_a_sphere() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("factor", "shift"), [(1, 1e9), (1e-200, 0), (1e-3, -1e6), (1e300, -5e299)])
+def test_a_range_far_from_zero_or_small_is_met_as_any_other(method: str, factor: float, shift: float) -> None:
+    mesh, places, values = sb.Mesh(*meshes.icosphere(2)), [0, 20, 40, 60], np.arange(4) - 1.0
+    wanted = factor * sb.spread_values(mesh, places, values, method) + shift
+    found = sb.spread_values(mesh, places, factor * values + shift, method)
+    np.testing.assert_allclose(found, wanted, rtol=1e-15, atol=1e-5 * factor)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_components_without_a_place_have_the_mean(method: str) -> None:
     mesh = sb.Mesh(*meshes.two_components())
     spread = sb.spread_values(mesh, [0, 5], [1, 4], method)
