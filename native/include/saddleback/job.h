@@ -55,6 +55,8 @@ class JobStage {
 
   /// Reports progress in 0..1 of this stage and throws Cancelled when asked to stop.
   void update(double fraction) const;
+  /// Reports that all of it is done, also where it was asked to stop meanwhile.
+  void finish() const { raise(1); }
   /// Throws Cancelled when asked to stop. Cheap enough for every few microseconds of work.
   void check() const {
     if (!job_) return;
@@ -67,6 +69,7 @@ class JobStage {
  private:
   friend class Job;
   [[noreturn]] static void throw_cancelled();
+  void raise(double fraction) const;
   void set_text(const std::string& text) const;
   Job::State* job_ = nullptr;
   double begin_ = 0, end_ = 1;

@@ -324,7 +324,9 @@ DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options,
 DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options, const JobStage& stage) {
   check_options(options, kept_->symmetry);
   kept_->prepare(stage);
-  return options.singularities ? kept_->designed(options, stage) : kept_->automatic(options, stage);
+  DirectionField result = options.singularities ? kept_->designed(options, stage) : kept_->automatic(options, stage);
+  stage.update(1);
+  return result;
 }
 
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options, Job* job) {

@@ -258,6 +258,7 @@ SurfacePoints project(const Mesh& mesh, std::span<const double> xyz, const Proje
     }
     stage.update(static_cast<double>(++done) / chunks);
   });
+  stage.update(1);
   return result;
 }
 

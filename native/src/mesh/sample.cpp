@@ -201,10 +201,14 @@ SurfacePoints sample(const Mesh& mesh, const SampleOptions& options) {
   check(mesh, options);
   const JobStage whole(options.job, "Sampling"), stage = whole.part(0.2, 1);
   const std::vector<Index> faces = ordered_faces(mesh, whole);
-  if (options.one_per_component && mesh.component_count() > 1) return sample_components(mesh, options, faces, stage);
   SurfacePoints points;
-  points.reserve(static_cast<std::size_t>(options.count));
-  Sampler(mesh, options.density, options, stage).add(faces, options.count, points);
+  if (options.one_per_component && mesh.component_count() > 1) {
+    points = sample_components(mesh, options, faces, stage);
+  } else {
+    points.reserve(static_cast<std::size_t>(options.count));
+    Sampler(mesh, options.density, options, stage).add(faces, options.count, points);
+  }
+  whole.update(1);
   return points;
 }
 

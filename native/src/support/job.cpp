@@ -58,8 +58,12 @@ JobStage JobStage::part(double begin, double end, const std::string& text) const
 }
 
 void JobStage::update(double fraction) const {
-  if (!job_) return;
   check();
+  raise(fraction);
+}
+
+void JobStage::raise(double fraction) const {
+  if (!job_) return;
   const double wanted = begin_ + (end_ - begin_) * std::clamp(fraction, 0.0, 1.0);
   double seen = job_->fraction.load(std::memory_order_relaxed);
   while (wanted > seen && !job_->fraction.compare_exchange_weak(seen, wanted, std::memory_order_relaxed)) {}

@@ -185,7 +185,11 @@ CentroidalVoronoi relax_and_show(const SaddleVertexGraph& graph, const Centroida
   CentroidalVoronoi result = relax(scaled, stage.part(0, relaxed));
   if (result.cells.sites.empty()) show_cells(graph, scaled, stage.part(relaxed, 1), result);
   if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
-  if (!options.stop.return_when_cancelled) stage.update(1);
+  if (options.stop.return_when_cancelled) {
+    stage.finish();
+  } else {
+    stage.update(1);
+  }
   return result;
 }
 

@@ -116,3 +116,22 @@ def test_parts_of_a_job_make_one_rising_fraction():
     for begin, end in ((-0.1, 1), (0.6, 0.5), (0, 1.1), (float("nan"), 1)):
         with pytest.raises(sb.InputError, match="begin, end: wanted 0 <= begin <= end <= 1"):
             job.part(begin, end)
+
+
+def test_every_fraction_ends_at_one() -> None:
+    """Also of calls with hardly anything to do, and of those that may be cut short but were not."""
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    graph = sb.SaddleVertexGraph(mesh)
+    calls = {
+        "sample": lambda job: sb.sample(mesh, 1, job=job),
+        "spread_values": lambda job: sb.spread_values(sb.Mesh(*meshes.two_components()), [0, 1], [1.0, 2.0], job=job),
+        "project": lambda job: sb.project(mesh, np.zeros((0, 3)), job=job),
+        "direction_field": lambda job: sb.direction_field(sb.Mesh(*meshes.grid(5, 5)), 1, {}, job=job),
+        "centroidal_voronoi": lambda job: sb.centroidal_voronoi(
+            graph, count=9, max_iterations=5, closed_ball=True, return_when_cancelled=True, job=job
+        ),
+    }
+    for name, call in calls.items():
+        job = sb.Job()
+        call(job)
+        assert job.fraction == 1, name
