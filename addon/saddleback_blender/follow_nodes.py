@@ -22,6 +22,7 @@ from typing import Any
 import bpy
 import numpy as np
 from mathutils import Matrix
+from numpy.typing import NDArray
 
 from . import compat, rollback
 from .nodes import (
@@ -55,6 +56,8 @@ BY_PLACE, BY_NUMBER, NOT_AT_ALL = "place", "number", "nothing"
 # Of the area at rest: what is more than that repeats faces; a face that is less has no inside to be found on.
 REPEATED, NO_AREA = 1.5, 1e-12
 SAME_REST = 1e-4  # of the root of the area at rest: places that are nearer to each other are the same
+# Of the spread of the places at rest: by how much sums of the same numbers differ in another order, and what is more.
+SAME_SUM, OTHER_SUM = 1e-5, 1e-4
 
 Read = Callable[[str, str], Any]  # of an attribute's name and type: the socket that gives it
 
@@ -68,6 +71,7 @@ class Host:
     vertex_count: int
     otherwise: str  # BY_PLACE, BY_NUMBER, NOT_AT_ALL
     area: float  # of its faces at rest, as the item's own space has it
+    sums: tuple[tuple[float, ...], ...] = ()  # of its places at rest, see `sums_of`
 
     @property
     def normal_axes(self) -> tuple[tuple[float, ...], ...]:
@@ -75,13 +79,34 @@ class Host:
         return tuple(map(tuple, np.linalg.inv(np.array(self.axes)).T.tolist()))
 
     @classmethod
-    def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int, otherwise: str, area: float) -> Host:
-        """Returns it as seen from an object whose world matrix is `place`."""
+    def of(
+        cls,
+        item: bpy.types.Object,
+        place: Matrix,
+        vertex_count: int,
+        otherwise: str,
+        area: float,
+        rest: NDArray[np.float64] | None = None,
+    ) -> Host:
+        """Returns it as seen from an object whose world matrix is `place`; `rest` (V, 3): where its vertices are so."""
         own, world = (np.array(matrix, np.float64)[:3, :3] for matrix in (place, item.matrix_world))
         seen = np.linalg.inv(own) @ world
         # Rounding goes, so that runs of objects of the same scale share a group.
         axes = np.round(seen, 6 - math.ceil(math.log10(np.abs(seen).max())))
-        return cls(item, tuple(map(tuple, axes.T.tolist())), vertex_count, otherwise, float(f"{area:.3g}"))
+        sums = () if rest is None or otherwise != BY_PLACE else sums_of(rest)
+        return cls(item, tuple(map(tuple, axes.T.tolist())), vertex_count, otherwise, float(f"{area:.3g}"), sums)
+
+
+def sums_of(places: NDArray[np.float64]) -> tuple[tuple[float, ...], ...]:
+    """The mean of places (V, 3), that of their squares about it, and that of themselves times their shares of all.
+
+    Vertices that were only sorted, as by *Sort Elements*, have the first two in common, and not the third; of those
+    that were moved the first two are others, too.
+    """
+    middle = places.mean(axis=0)
+    off = places - middle
+    shares = (np.arange(len(places)) / len(places))[:, None]
+    return tuple(tuple(sums.tolist()) for sums in (middle, (off**2).mean(axis=0), (shares * off).mean(axis=0)))
 
 
 @dataclass(frozen=True)
@@ -95,7 +120,7 @@ class Known:
 
 def set_following(item: bpy.types.Object, host: Host, known: Known) -> bpy.types.Modifier:
     """Takes the points of a mesh, or of a curve object, along with the host."""
-    key = repr((host.axes, host.vertex_count, host.otherwise, host.area))
+    key = repr((host.axes, host.vertex_count, host.otherwise, host.area, host.sums))
     key += repr((known.is_shifted, known.is_turned, known.keeper is not None))
     group = next((group for group in bpy.data.node_groups if group.get(KEY) == key and group.library is None), None)
     if group is None:
@@ -178,6 +203,8 @@ def _triangle_now(wiring: Wiring, source: Any, host: Host, known: Known, read: R
         upward = wiring.combined(wiring.normal(), host.normal_axes)
         normals = [wiring.sampled(mesh, "FLOAT_VECTOR", upward, read(name, "INT")) for name in CORNER_ATTRIBUTES]
         normal = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), normals)
+    if host.sums:
+        is_same = wiring.boolean("NIMPLY", is_same, _is_sorted(wiring, mesh, host))
     if host.otherwise == BY_PLACE:
         values = {NOW_POSITION: seen, NOW_NORMAL: upward} if has_axes else {NOW_POSITION: seen}
         rest = _RestMesh(wiring, mesh, values, host.area)
@@ -204,6 +231,23 @@ def _triangle_now(wiring: Wiring, source: Any, host: Host, known: Known, read: R
     z = wiring.vector("NORMALIZE", normal)
     y = wiring.vector("NORMALIZE", wiring.vector("CROSS_PRODUCT", z, side))
     return _TriangleNow(is_known, own, foot, (wiring.vector("CROSS_PRODUCT", y, z), y, z))
+
+
+def _is_sorted(wiring: Wiring, mesh: Any, host: Host) -> Any:
+    """Tells whether the vertices of the mesh have other numbers than those that were read, and are the same."""
+    middle, squares, ordered = host.sums
+    off = wiring.vector("SUBTRACT", wiring.attribute(REST_POSITION, "FLOAT_VECTOR"), middle)
+    share = wiring.math("DIVIDE", wiring.node("GeometryNodeInputIndex").outputs["Index"], float(host.vertex_count))
+    wide = math.sqrt(sum(squares))
+    is_other = [
+        wiring.is_greater(wiring.distance(wiring.mean(mesh, value), wanted), least)
+        for value, wanted, least in (
+            (off, (0.0, 0.0, 0.0), SAME_SUM * wide),
+            (wiring.vector("MULTIPLY", off, off), squares, SAME_SUM * wide**2),
+            (wiring.vector("MULTIPLY", off, share), ordered, OTHER_SUM * wide),
+        )
+    ]
+    return wiring.boolean("NIMPLY", is_other[2], wiring.boolean("OR", *is_other[:2]))
 
 
 class _RestMesh:

@@ -72,6 +72,14 @@ class Wiring:
         self.link(geometry, made.inputs["Geometry"])
         return self.enabled(made.outputs, "Point Count")
 
+    def mean(self, mesh: Any, vector: Any) -> Any:
+        """The mean of a vector over the vertices of a mesh."""
+        made = self.node("GeometryNodeAttributeStatistic")
+        made.data_type = "FLOAT_VECTOR"
+        self.link(mesh, made.inputs["Geometry"])
+        self.link(vector, self.enabled(made.inputs, "Attribute"))
+        return self.enabled(made.outputs, "Mean")
+
     def compared(self, number: Any, operation: str, to: Any) -> Any:
         """Compares a whole number with another one."""
         made = self.node("FunctionNodeCompare")

@@ -16,6 +16,7 @@ from saddleback_blender.bridge.inputs.curves_in import polylines_of
 from saddleback_blender.bridge.outputs import following
 from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
 from saddleback_blender.follow_nodes import follows
+from tests import synthetic_cells
 
 CELLS = 60
 # Of a cell's size: how far a vertex may be from where it is to be.
@@ -551,3 +552,44 @@ def test_what_was_made_stays_where_a_transform_is_applied_or_an_origin_set(chang
     item.data.update_tag()
     bpy.context.view_layer.update()
     assert all(follows(output, item) for output in outputs)
+
+
+@pytest.mark.parametrize("order", ["REVERSE", "RANDOMIZE"])
+def test_sorted_vertices_lead_nobody_astray(order):
+    """Sort Elements gives a source's vertices other numbers: what was made of it stands where it stood."""
+    item = sphere()
+    item.shape_key_add(name="Basis")
+    wide = item.shape_key_add(name="Wide")
+    for point in wide.data:
+        point.co.x *= 1.5
+    bpy.ops.saddleback.tessellate(
+        count=20, iterations=2, k=30, make_cells=True, make_centers=True, thickness=0.05, edge_kind="CURVE"
+    )
+    wide.value = 1.0
+    bpy.context.view_layer.update()
+    outputs = outputs_of(item)
+    assert len(outputs) == 3
+
+    def places():
+        bpy.context.view_layer.update()
+        return [points_of_any(output) for output in outputs]
+
+    before = places()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.sort_elements(type=order, elements={"VERT", "FACE"}, seed=1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for was, now in zip(before, places(), strict=True):
+        assert np.abs(was - now).max() < 1e-3
+
+
+def test_what_is_moved_and_not_sorted_is_followed_by_numbers():
+    """All of a mesh is moved along itself, so that its places of before are on it, too."""
+    item = add_object("Strip", *synthetic_cells.grid(40, 4))
+    bpy.ops.saddleback.tessellate(count=20, iterations=2, k=30, make_centers=True)
+    before = points_of_any(find_output(item, "centers"))
+    for vertex in item.data.vertices:
+        vertex.co.x += 0.25
+    item.data.update()
+    bpy.context.view_layer.update()
+    assert np.allclose(before + (0.25, 0.0, 0.0), points_of_any(find_output(item, "centers")), atol=1e-5)

@@ -94,7 +94,7 @@ class Follower:
         keeper = _new_keeper(self._source, item, len(anchors.corners)) if item.type == "CURVE" else None
         self._write(item.data if keeper is None else keeper.data, anchors, vectors, frames)
         known = Known(is_shifted, rotations is not None, keeper)
-        host = Host.of(self._source, place, self._surface.vertex_count, rest.otherwise, rest.area)
+        host = Host.of(self._source, place, self._surface.vertex_count, rest.otherwise, rest.area, rest.places)
         set_following(item, host, known)
 
     def _write(self, mesh: bpy.types.Mesh, anchors: Anchors, vectors: dict[str, Reals], frames: Reals | None) -> None:
