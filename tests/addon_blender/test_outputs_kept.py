@@ -132,6 +132,19 @@ def test_a_duplicate_of_an_output_belongs_to_the_artist():
     assert kept.name in bpy.data.objects and len(kept.data.polygons) == polygons
 
 
+def test_a_duplicate_of_an_output_stays_the_artist_s_when_the_original_is_deleted():
+    """It was taken for the output: runs changed it, and Clear took it away."""
+    source = sphere_source()
+    made = write_all(source)
+    kept = duplicate(made[1])
+    name, polygons = kept.name, len(kept.data.polygons)
+    bpy.data.objects.remove(made[1])
+    assert find_output(source, "cells") is None
+    assert write_all(source, count=7)[1].name == "Ball Cells" and len(kept.data.polygons) == polygons
+    clear_outputs(bpy.context, source)
+    assert bpy.data.objects[name] == kept and len(kept.data.polygons) == polygons
+
+
 def test_renaming_everything_and_reopening_changes_nothing(tmp_path):
     source = sphere_source()
     for item in write_all(source):

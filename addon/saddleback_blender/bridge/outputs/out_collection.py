@@ -9,6 +9,7 @@ kept, since a pointer in a custom property would keep a deleted object in the fi
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from functools import partial
 
@@ -177,7 +178,8 @@ def _all_of(source: bpy.types.Object) -> list[bpy.types.Object]:
     by_role: dict[tuple[str, str], list[bpy.types.Object]] = {}
     for item in bpy.data.objects:
         is_ours = item.get(SOURCE) == token and ROLE in item and item.library is None and item != source
-        if is_ours and (item.parent is None or item.parent == source or token_of(item.parent) != token):
+        is_here = item.parent is None or item.parent == source or token_of(item.parent) != token
+        if is_ours and is_here and not _is_duplicate(source, item):
             by_role.setdefault((str(item[ROLE]), str(item.get(LAYER, ""))), []).append(item)
     return [_original(source, candidates) for candidates in by_role.values()]
 
@@ -300,6 +302,14 @@ def _remove(item: bpy.types.Object) -> None:
 def _original(source: bpy.types.Object, candidates: list[bpy.types.Object]) -> bpy.types.Object:
     """A child comes first: others may be of a duplicate of the source that was deleted."""
     return min(candidates, key=lambda item: (item.parent != source, item.name != item.get(NAME), item.name))
+
+
+def _is_duplicate(source: bpy.types.Object, item: bpy.types.Object) -> bool:
+    """Tells an artist's duplicate of an output by Blender's number behind the name that we gave the output, while the
+    source is called as it was then: one that is a duplicate itself has outputs with numbers.
+    """
+    name = str(item.get(NAME, ""))
+    return name.startswith(f"{source.name} ") and bool(re.fullmatch(re.escape(name) + r"\.\d{3,}", item.name))
 
 
 def _object_type(data: bpy.types.ID) -> str:
