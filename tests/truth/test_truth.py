@@ -45,6 +45,10 @@ def test_random_input_meets_the_truths():
         ("cells_exact.check_dual_edges_are_ways", 4668),  # straight to the place beside the site, on another sheet
         ("cells_exact.check_dual_edges_are_ways", 8006),  # by a corner of the boundary, straight over nothing
         ("cells.exact_cells_of_places", 1000000149555),  # a spike of needles: three gigabytes of windows went round it
+        ("cells_exact.check_dual_edges_from_either_side", 1000031016488),  # past the end of a border, on each side
+        ("cells_exact.check_dual_edges_from_either_side", 1000031014354),  # over a target in space, aimed at for ever
+        ("cells_exact.check_dual_edges_from_either_side", 1000031007050),  # by a coarse graph's paths
+        ("cells_exact.check_dual_edges_from_either_side", 1000051008471),  # along the surface's border
         ("cells_exact.check_borders_are_nearest", 1000020346635),  # a site that lags little all along another's ridge
         ("cells_exact.check_borders_are_nearest", 1000020354905),
         ("cells_exact.check_cells_without_places", 1000020332442),

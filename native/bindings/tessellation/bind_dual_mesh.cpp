@@ -64,7 +64,10 @@ py::array edge_lengths(const py::object& self) {
   auto& dual = py::cast<Dual&>(self);
   if (!dual.edge_lengths) {
     const JobIn token{py::none()};
-    std::vector<double> lengths = without_gil([&] { return dual_edge_lengths(*dual.mesh, *dual.cells, 0, token); });
+    const auto& graph = py::cast<const SaddleVertexGraph&>(dual.graph);
+    std::vector<double> lengths;
+    for (const GeodesicPath& path : without_gil([&] { return dual_edge_paths(graph, *dual.cells, 0, token); }))
+      lengths.push_back(path.length);
     if (!dual.edge_lengths) dual.edge_lengths = std::move(lengths);  // another thread may have been sooner
   }
   return view_of(std::span<const double>(*dual.edge_lengths), self);
@@ -124,10 +127,9 @@ void bind_dual(py::module_& m) {
           },
           "(e, 2) int32: the sites on both sides of each boundary between cells.")
       .def_property_readonly("edge_lengths", &edge_lengths,
-                             "(e,) float64, mesh units: of the straightest geodesic from site to site across that "
-                             "boundary; where vertices are in its way, of the shortest way over the boundary, as the "
-                             "cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those. "
-                             "Found when first asked for, O(faces crossed) each.")
+                             "(e,) float64, mesh units: of the locally shortest way from site to site across that "
+                             "boundary, which `GeodesicVoronoi.dual_paths` leads along. Found when first asked for, "
+                             "O(faces crossed) each.")
       .def_property_readonly("cells", &cells_of, "GeodesicVoronoi: the cells of its sites.")
       .def("quads", &quads, py::arg("curves") = py::none(), k_quads_doc)
       .def_readonly("issues", &Dual::issues, "List of DualIssue; empty: a triangulation of the surface.")

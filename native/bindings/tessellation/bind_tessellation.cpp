@@ -248,7 +248,8 @@ job : Job, optional
 Returns
 -------
 list of GeodesicPath
-    In the order of `dual("strict").edges`: from site to site across the boundary between their cells.
+    In the order of `dual("strict").edges`: from site to site, the locally shortest way in the class of the shortest
+    one over the boundary between their cells.
 
 Raises
 ------
@@ -257,7 +258,8 @@ Cancelled
 
 Notes
 -----
-O(faces crossed) each, with a distance field for those that pass a saddle vertex. Each is as long as its polyline.)";
+O(faces crossed) each; of cells by the graph with a distance field for those that pass a saddle vertex. Each is as long
+as its polyline, those of exact cells do not depend on the graph.)";
 
 SurfacePoints centers(const Cells& cells, const py::object& density, const py::object& threads, const py::object& job) {
   ArrayIn<double> weights;

@@ -1854,7 +1854,8 @@ class GeodesicVoronoi:
         Returns
         -------
         list of GeodesicPath
-            In the order of `dual("strict").edges`: from site to site across the boundary between their cells.
+            In the order of `dual("strict").edges`: from site to site, the locally shortest way in the class of the shortest
+            one over the boundary between their cells.
 
         Raises
         ------
@@ -1863,7 +1864,8 @@ class GeodesicVoronoi:
 
         Notes
         -----
-        O(faces crossed) each, with a distance field for those that pass a saddle vertex. Each is as long as its polyline.
+        O(faces crossed) each; of cells by the graph with a distance field for those that pass a saddle vertex. Each is as long
+        as its polyline, those of exact cells do not depend on the graph.
         """
     def centers(
         self, density: ArrayLike | None = None, *, threads: SupportsIndex = 0, job: Job | None = None
@@ -2050,7 +2052,7 @@ class DualMesh:
         """(e, 2) int32: the sites on both sides of each boundary between cells."""
     @property
     def edge_lengths(self) -> _Floats:
-        """(e,) float64, mesh units: of the straightest geodesic from site to site across that boundary; where vertices are in its way, of the shortest way over the boundary, as the cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those. Found when first asked for, O(faces crossed) each."""
+        """(e,) float64, mesh units: of the locally shortest way from site to site across that boundary, which `GeodesicVoronoi.dual_paths` leads along. Found when first asked for, O(faces crossed) each."""
     @property
     def cells(self) -> GeodesicVoronoi:
         """GeodesicVoronoi: the cells of its sites."""

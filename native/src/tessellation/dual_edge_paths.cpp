@@ -1,16 +1,18 @@
-// A dual edge is the geodesic from site to site through the boundary between their cells. In the face of one of the
-// boundary's straight bits the two sites have mirror images, as the bit's ends' distances say; that gives the direction
-// at one site, and straightest geodesics from there are aimed until one meets the other site; else from that one.
+// A dual edge is the geodesic from site to site over the boundary between their cells. In the face of one of the
+// boundary's straight bits the two sites have mirror images, as the bit's ends' distances say; that gives the
+// directions in which straightest geodesics are aimed until they meet both sites; exact cells know the ways from beside
+// the bit. Where the boundary is nearest to its sites at one of its ends the two meet at an angle: the curve is
+// tightened.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
 
-#include "saddleback/error.h"
 #include "saddleback/geodesics/geodesic_paths.h"
+#include "saddleback/geodesics/shortened_curve.h"
 #include "saddleback/mesh/surface_curve.h"
 #include "saddleback/tessellation/dual_mesh.h"
 
@@ -21,16 +23,18 @@ namespace {
 
 constexpr double k_hit = 1e-9;         // relative to the length: a geodesic this near to its aim has met it
 constexpr double k_same_sheet = 1e-6;  // barycentric: nearer to an edge than that a point is in both faces beside it
+constexpr double k_longer = 5e-3;      // than the cells of usual graphs say: round the wrong side of a vertex
 constexpr int k_most_shots = 20;
+// Of the distance: so far from the boundary places are the site's, but where another site is beside it.
+constexpr std::array k_beside = {1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
 
 /// The place where a dual edge crosses the boundary, the distance of its sites from there, and the direction of the
 /// face in which the left one lies.
 struct Crossing {
   SurfacePoint point;
   double distance = 0, angle = 0;
-  double angle_of_right = 0;    ///< the direction of the right one
-  double height = 0, turn = 0;  ///< of the left site above the boundary's bit; from the crossing to the image beyond it
-  bool is_aimed = false;        ///< some bit is long enough to tell a direction
+  double angle_of_right = 0;  ///< the direction of the right one
+  bool is_aimed = false;      ///< some bit is long enough to tell a direction
 };
 
 /// Returns the crossing where the boundary is nearest to its sites.
@@ -57,8 +61,6 @@ Crossing crossing_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyl
             .distance = to_site.norm(),
             .angle = std::atan2(to_site.y(), to_site.x()),
             .angle_of_right = std::atan2(to_right.y(), to_right.x()),
-            .height = height,
-            .turn = std::atan2(foot - on_bit, height),
             .is_aimed = true};
   }
   return best;
@@ -71,14 +73,13 @@ struct Miss {
 };
 
 Miss miss_of(const Mesh& mesh, const TraceEnd& end, const SurfacePoint& target) {
-  if (mesh.is_intrinsic()) {  // which tells nothing of targets in other faces
-    const std::optional<Vec3> place = barycentric_in(mesh, target, end.point.face);
-    if (!place) return {std::numeric_limits<double>::infinity(), 0, 0};
+  if (const std::optional<Vec3> place = barycentric_in(mesh, target, end.point.face)) {
     const FaceChart chart(mesh, end.point.face);
     const Vec2 step = chart.to_plane(*place) - chart.to_plane(end.point.barycentric);
     const Vec2 ahead(std::cos(end.angle), std::sin(end.angle));
     return {step.norm(), step.dot(ahead), step.dot(Vec2(-ahead.y(), ahead.x()))};
   }
+  if (mesh.is_intrinsic()) return {std::numeric_limits<double>::infinity(), 0, 0};  // tells no places of other faces
   const Vec3 step = position(mesh, target) - position(mesh, end.point);
   const Vec3 ahead = direction_in_space(mesh, end.point.face, end.angle);
   const Vec3 left = direction_in_space(mesh, end.point.face, end.angle + std::numbers::pi / 2);
@@ -102,98 +103,74 @@ bool aim(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& target,
   return false;
 }
 
-/// Returns the path with its length measured along its polyline.
-GeodesicPath measured(const Mesh& mesh, GeodesicPath path) {
+/// The curve pulled tight, with its length measured along its polyline.
+GeodesicPath tightened(const Mesh& mesh, SurfacePoints points) {
+  GeodesicPath path = shortened_curve(SurfaceCurve(mesh, std::move(points)));
   path.length = 0;
-  for (std::size_t i = 1; i < path.points.size(); ++i)
+  for (std::size_t i = 1; i < path.surface.size(); ++i)
     path.length += step_length(mesh, path.surface[i - 1], path.surface[i]);
   return path;
 }
 
-GeodesicPath reversed(GeodesicPath path) {
-  std::ranges::reverse(path.points);
-  std::ranges::reverse(path.surface);
-  return path;
+/// Appends the shortest way from the crossing to a site, by exact distances, which are known beside the boundary.
+/// \return false where none of the places about that direction is the site's: at a border it may lead off the surface.
+bool append_exact_way(const Mesh& mesh, const GeodesicVoronoi& cells, const Crossing& crossing, Index site,
+                      double angle, SurfacePoints& points) {
+  for (const double share : k_beside)
+    for (const double turn : {0.0, 0.5, -0.5, 1.0, -1.0}) {
+      const double set_out = angle_about(mesh, crossing.point, angle + turn);
+      const SurfacePoints step = trace(mesh, crossing.point, set_out, share * crossing.distance).path.surface;
+      const Index source = cells.exact_field->nearest_at(step.back()).source;
+      if (source == k_none || cells.exact_sites[source] != site) continue;
+      const SurfacePoints way = cells.exact_field->path(step.back()).surface;
+      points.insert(points.end(), step.begin() + 1, step.end());
+      points.insert(points.end(), way.rbegin() + 1, way.rend());
+      return true;
+    }
+  return false;
 }
 
-/// The shortest paths to the crossing, one after the other.
-GeodesicPath over_crossing(const SaddleVertexGraph& graph, const SurfacePoint& left, const SurfacePoint& middle,
-                           const SurfacePoint& right) {
-  GeodesicPath path = shortest_path(graph, left, middle, {.shorten = true, .threads = 1});
-  const GeodesicPath rest = reversed(shortest_path(graph, right, middle, {.shorten = true, .threads = 1}));
-  path.points.insert(path.points.end(), rest.points.begin() + 1, rest.points.end());
-  path.surface.insert(path.surface.end(), rest.surface.begin() + 1, rest.surface.end());
-  return measured(graph.mesh(), std::move(path));
+/// Appends the straightest geodesic from the crossing to a site that lies in that direction, but for the crossing.
+/// \return false where none near it meets the site.
+bool append_straight_way(const Mesh& mesh, const Crossing& crossing, const SurfacePoint& site, double angle,
+                         SurfacePoints& points) {
+  double length = crossing.distance;
+  if (vertex_at(mesh, crossing.point) != k_none || !aim(mesh, crossing.point, site, angle, length)) return false;
+  if (length > crossing.distance * (1 + k_longer)) return false;
+  const SurfacePoints way = trace(mesh, crossing.point, angle, length).path.surface;
+  if (way.size() < 2 || shared_face(mesh, way[way.size() - 2], site) == k_none) return false;
+  points.insert(points.end(), way.begin() + 1, way.end() - 1);
+  points.push_back(site);
+  return true;
 }
 
-enum class Straight : std::uint8_t { none, to_right, to_left };
-
-/// A dual edge: the straightest geodesic from site to site, or over the boundary where none is found.
-struct Across {
-  Crossing crossing;
-  Straight straight;
-  SurfacePoint from;  ///< the site that it was aimed from, in the face into which it leaves
-  double angle, length;
-};
-
-/// A straightest geodesic that leaves a point in a face that it lies in.
-struct Way {
-  SurfacePoint from;
-  double angle, length;
-};
-
-/// Aims a geodesic through the crossing from one of its sites at the other, from a site that lies in the direction
-/// `aside` of the crossing's face; none where no geodesic near the first aims meets both.
-std::optional<Way> way_through(const Mesh& mesh, const Crossing& crossing, const SurfacePoint& from,
-                               const SurfacePoint& to, double aside, double turn) {
-  double back = aside, half = crossing.distance;
-  if (!aim(mesh, crossing.point, from, back, half)) return {};
-  const TraceEnd at_from = trace_end(mesh, crossing.point, back, half);
-  const std::optional<Vec3> place = barycentric_in(mesh, from, at_from.point.face);
-  if (!place) return {};
-  // Straight to the other site's image, which passes beside a short boundary; else over the crossing.
-  Way way{{at_from.point.face, *place}, at_from.angle + std::numbers::pi + turn, 2 * crossing.height};
-  if (way.length > 0 && aim(mesh, way.from, to, way.angle, way.length)) return way;
-  if (turn == 0) return {};
-  way.angle = at_from.angle + std::numbers::pi;
-  way.length = 2 * half;
-  return aim(mesh, way.from, to, way.angle, way.length) ? std::optional(way) : std::nullopt;
-}
-
-Across look_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
-  const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
-                     &right = cells.sites[cells.edge_cells[polyline][1]];
-  const Crossing crossing = crossing_of(mesh, cells, polyline);
-  const double chord = mesh.bird((position(mesh, left) - position(mesh, right)).norm());
-  Across across{crossing, Straight::none, left, 0, std::max(2 * crossing.distance, chord)};
-  if (!crossing.is_aimed || vertex_at(mesh, crossing.point) != k_none) return across;
-  // A straightest way round the wrong side of a vertex is not the shortest.
-  const double most = across.length * (1 + k_hit);
-  std::optional<Way> way = way_through(mesh, crossing, left, right, crossing.angle, crossing.turn);
-  if (way && way->length <= most) return {crossing, Straight::to_right, way->from, way->angle, way->length};
-  // The right site is the left one's image at the bit: where vertices part the ways about a first aim, the other meets.
-  way = way_through(mesh, crossing, right, left, crossing.angle_of_right, -crossing.turn);
-  if (way && way->length <= most) return {crossing, Straight::to_left, way->from, way->angle, way->length};
-  return across;
+/// The shortest way from the left site to the right one in the class of the one over the crossing; none where the cells
+/// do not tell that one, as it bends about vertices.
+std::optional<GeodesicPath> way_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline,
+                                       const Crossing& crossing) {
+  if (!crossing.is_aimed) return {};
+  SurfacePoints points;
+  const auto append = [&](Index site, double angle) {
+    return (cells.exact_field && append_exact_way(mesh, cells, crossing, site, angle, points)) ||
+           append_straight_way(mesh, crossing, cells.sites[site], angle, points);
+  };
+  const auto& [left, right] = cells.edge_cells[polyline];
+  if (!append(left, crossing.angle)) return {};
+  std::ranges::reverse(points);
+  points.push_back(crossing.point);
+  if (!append(right, crossing.angle_of_right)) return {};
+  return tightened(mesh, std::move(points));
 }
 
 GeodesicPath path_across(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, Index polyline) {
   const Mesh& mesh = graph.mesh();
-  const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
-                     &right = cells.sites[cells.edge_cells[polyline][1]];
-  const Across across = look_across(mesh, cells, polyline);
-  if (across.straight != Straight::none) {
-    const bool is_to_left = across.straight == Straight::to_left;
-    const SurfacePoint& end = is_to_left ? left : right;
-    GeodesicPath path = trace(mesh, across.from, across.angle, across.length).path;
-    const std::size_t last = path.surface.size() - 1;
-    if (last > 0 && shared_face(mesh, path.surface[last - 1], end) != k_none) {
-      path.surface[last] = end;
-      path.points[last] = position(mesh, end);
-      return measured(mesh, is_to_left ? reversed(std::move(path)) : std::move(path));
-    }
-  }
-  return over_crossing(graph, left, across.crossing.point, right);
+  const Crossing crossing = crossing_of(mesh, cells, polyline);
+  if (std::optional<GeodesicPath> way = way_across(mesh, cells, polyline, crossing)) return *std::move(way);
+  const auto& [left, right] = cells.edge_cells[polyline];
+  SurfacePoints points = shortest_path(graph, cells.sites[left], crossing.point, {.threads = 1}).surface;
+  const SurfacePoints rest = shortest_path(graph, cells.sites[right], crossing.point, {.threads = 1}).surface;
+  points.insert(points.end(), rest.rbegin() + 1, rest.rend());
+  return tightened(mesh, std::move(points));
 }
 
 std::vector<Index> open_boundaries(const GeodesicVoronoi& cells) {
@@ -204,18 +181,6 @@ std::vector<Index> open_boundaries(const GeodesicVoronoi& cells) {
 }
 
 }  // namespace
-
-std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads, Job* job) {
-  const JobStage stage(job, "Measuring dual edges");
-  const std::vector<Index> open = open_boundaries(cells);
-  std::vector<double> lengths(open.size());
-  parallel_for(static_cast<Index>(open.size()), threads, 16, [&](Index i, int) {
-    stage.check();
-    lengths[i] = look_across(mesh, cells, open[i]).length;
-  });
-  stage.update(1);
-  return lengths;
-}
 
 std::vector<GeodesicPath> dual_edge_paths(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, int threads,
                                           Job* job) {

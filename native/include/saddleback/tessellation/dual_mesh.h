@@ -57,16 +57,10 @@ DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads = 0,
                    Job* job = nullptr);
 
-/// Returns how long the edges of `dual_mesh(mesh, cells)` are, in its order: the straightest geodesic from site to site
-/// across the boundary; where none can be aimed, vertices being in the way, the shortest way over the boundary, as the
-/// cells' distances say. As `dual_edge_paths` within the accuracy of those. \throw Cancelled. O(faces crossed) each.
-std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads = 0,
-                                      Job* job = nullptr);
-
-/// The edges of `dual_mesh(mesh, cells)`, in its order, as paths on the surface: from the left cell's site to the right
-/// one's across the boundary between the two, straightest where such a geodesic can be aimed, else the graph's shortest
-/// paths to that boundary, straightened. \throw Cancelled. O(faces crossed) each, with a distance field for those that
-/// pass a saddle.
+/// The edges of `dual_mesh(graph, cells)`, in its order, as paths on the surface: from the left cell's site to the
+/// right one's, the locally shortest way in the class of the shortest one over the boundary between the two; of exact
+/// cells by their own distances, of others by straightest geodesics or, where vertices are in their way, the graph's
+/// shortest paths. \throw Cancelled. O(faces crossed) each, with a distance field for those by the graph.
 std::vector<GeodesicPath> dual_edge_paths(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, int threads = 0,
                                           Job* job = nullptr);
 
