@@ -149,6 +149,7 @@ struct Moments {
   Vec2 centroid;
 };
 
+/// Moments of the cell of a site that shares none with an earlier one: edges know these alone.
 Moments cell_moments(const Voronoi2d& diagram, Index site) {
   constexpr double k_infinity = std::numeric_limits<double>::infinity(),
                    k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -183,13 +184,13 @@ Moments cell_moments(const Voronoi2d& diagram, Index site) {
 
 std::vector<double> Voronoi2d::areas() const {
   std::vector<double> result(sites.size());
-  for (std::size_t i = 0; i < sites.size(); ++i) result[i] = cell_moments(*this, static_cast<Index>(i)).area;
+  for (std::size_t i = 0; i < sites.size(); ++i) result[i] = cell_moments(*this, site_of[i]).area;
   return result;
 }
 
 std::vector<Vec2> Voronoi2d::centroids() const {
   std::vector<Vec2> result(sites.size());
-  for (std::size_t i = 0; i < sites.size(); ++i) result[i] = cell_moments(*this, static_cast<Index>(i)).centroid;
+  for (std::size_t i = 0; i < sites.size(); ++i) result[i] = cell_moments(*this, site_of[i]).centroid;
   return result;
 }
 

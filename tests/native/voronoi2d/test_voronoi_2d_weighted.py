@@ -371,3 +371,14 @@ def test_a_disk_with_thousands_of_sides_stops_at_once():
     weights = np.zeros(20_000)
     weights[-1] = 0.5
     check_it_stops_when_silent(lambda job: sb.voronoi_2d(sites, weights=weights, threads=1, job=job), 0.7)
+
+
+def test_equal_sites_have_the_same_area_and_center() -> None:
+    """Where the second of two lay between heavier cells, its sides were taken as those of another's."""
+    rng = np.random.default_rng(8)
+    sites = rng.random((40, 2))
+    weights = np.where(np.arange(40) % 9 == 0, 0.2, 0.0)
+    diagram = sb.voronoi_2d(np.vstack([sites, sites[::-1]]), np.r_[weights, weights[::-1]])
+    assert np.isfinite(diagram.areas).sum() > 20
+    assert np.array_equal(diagram.areas[:40], diagram.areas[:39:-1])
+    assert np.array_equal(diagram.centroids[:40], diagram.centroids[:39:-1], equal_nan=True)
