@@ -382,3 +382,20 @@ def test_equal_sites_have_the_same_area_and_center() -> None:
     assert np.isfinite(diagram.areas).sum() > 20
     assert np.array_equal(diagram.areas[:40], diagram.areas[:39:-1])
     assert np.array_equal(diagram.centroids[:40], diagram.centroids[:39:-1], equal_nan=True)
+
+
+@pytest.mark.parametrize("step", [0.125, 0.25])
+def test_cells_that_touch_the_domain_in_a_corner_are_whole(step: float) -> None:
+    """On lattices, however they are turned; ways in and out were confused there, and cells lost."""
+    axis = np.arange(0, 1 + step, step)
+    lattice = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    sites = np.vstack([lattice, lattice + step / 2]) - 0.5
+    square = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    for heavy in range(len(sites)):
+        weights = np.where(np.arange(len(sites)) == heavy, 3 * step, 0.0)
+        areas = [
+            sb.voronoi_2d(sites @ turn, weights).clip(square).areas
+            for turn in (np.array([[x, 0], [0, y]])[:, ::order] for x in (1, -1) for y in (1, -1) for order in (1, -1))
+        ]
+        np.testing.assert_allclose(np.sum(areas, axis=1), 1, rtol=1e-12)
+        np.testing.assert_allclose(areas, [areas[0]] * 8, atol=1e-4 * step**2)

@@ -46,10 +46,24 @@ bool is_inside(const Loop& outline, const Vec2& point) {
   return inside;
 }
 
+/// Tells whether a point lies in the domain, moved like that: a cell's may lie on its border.
+bool is_in_moved(const std::vector<Loop>& domain, const Vec2& p) {
+  bool inside = false;
+  for (const Loop& loop : domain) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vec2 &a = loop[i], &b = loop[i + 1 == loop.size() ? 0 : i + 1];
+      if ((a.y() >= p.y()) == (b.y() >= p.y())) continue;
+      if ((side_of_moved(a, b, p) > 0) == (b.y() > a.y())) inside = !inside;
+    }
+  }
+  return inside;
+}
+
 /// Holds where an edge of the domain goes through the outline.
 struct Passage {
   double share;  ///< of the edge's length
   double place;  ///< on the outline: number of the side, and the share of its length
+  bool is_in;    ///< from outside of the outline
 };
 
 double share_of(double from, double to) {
@@ -64,10 +78,18 @@ void find_passages(const Loop& outline, const Vec2& a, const Vec2& b, std::vecto
     if (side_of_moved(a, b, p) == side_of_moved(a, b, q) || moved_side(p, q, a) == moved_side(p, q, b)) continue;
     constexpr double k_before_next = 1 - 0x1p-20;
     const double along = share_of(cross(b - a, p - a), cross(b - a, q - a));
-    passages.push_back(
-        {share_of(cross(q - p, a - p), cross(q - p, b - p)), static_cast<double>(i) + std::min(along, k_before_next)});
+    passages.push_back({share_of(cross(q - p, a - p), cross(q - p, b - p)),
+                        static_cast<double>(i) + std::min(along, k_before_next), moved_side(p, q, b) > 0});
   }
   std::sort(passages.begin(), passages.end(), [](const Passage& x, const Passage& y) { return x.share < y.share; });
+}
+
+/// Puts ways in and out in turn: rounding confuses those at about one place, as about a corner on the domain's border.
+void take_turns(std::vector<Passage>& passages, bool is_in) {
+  for (auto at = passages.begin(); at != passages.end(); ++at, is_in = !is_in) {
+    const auto next = std::find_if(at, passages.end(), [&](const Passage& passage) { return passage.is_in != is_in; });
+    if (next != passages.end()) std::rotate(at, next, next + 1);
+  }
 }
 
 /// A part of a loop of the domain within the outline, from where it comes in to where it goes out.
@@ -91,6 +113,7 @@ bool cut_loop(const Loop& outline, const Loop& loop, std::vector<Chain>& chains,
     if (is_in) add_point(current->points, a);
     if (is_far(a, b)) continue;
     find_passages(outline, a, b, passages);
+    take_turns(passages, is_in);
     for (const Passage& passage : passages) {
       const Vec2 point = a + passage.share * (b - a);
       is_in = !is_in;
@@ -144,6 +167,10 @@ void join_chains(const Loop& outline, const std::vector<Chain>& chains, std::vec
   }
 }
 
+void scale(Loop& loop, double factor) {
+  for (Vec2& point : loop) point *= factor;
+}
+
 /// Points far out from the end of one open side to the begin of the next, counter-clockwise about the site.
 void add_far_points(const Vec2& site, double distance, const Vec2& end, const Vec2& begin, Loop& loop) {
   const Vec2 from = end - site, to = begin - site;
@@ -161,9 +188,13 @@ void add_far_points(const Vec2& site, double distance, const Vec2& end, const Ve
 
 CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance,
                          double gap, const JobStage& stage)
-    : diagram_(diagram), domain_(domain), map_(map), stage_(stage), tolerance_(tolerance), distance_(0.5 * gap) {
+    : diagram_(diagram), map_(map), stage_(stage), tolerance_(tolerance), distance_(0.5 * gap) {
   low_ = high_ = domain.loops()[0][0];
   for (const Vec2& point : domain.loops()[0]) low_ = low_.cwiseMin(point), high_ = high_.cwiseMax(point);
+  constexpr double k_small = 0x1p-200;
+  const double largest = low_.cwiseAbs().cwiseMax(high_.cwiseAbs()).maxCoeff();
+  if (largest < k_small) unit_ = std::ldexp(1.0, std::min(-std::ilogb(largest), 1000));
+  for (const Loop& loop : domain.loops()) scale(loops_.emplace_back(loop), unit_);
 }
 
 /// Returns more than the distance of a site from any point of the domain, so that outlines may be cut short there.
@@ -233,17 +264,19 @@ std::vector<Loop> CurvedCells::whole(Index site) const {
     case DomainMap::Place::at_edge:
       break;
   }
+  scale(cell, unit_);
   std::vector<Loop> loops;
   std::vector<Chain> chains;
-  for (const Loop& loop : domain_.loops())
+  for (const Loop& loop : loops_)
     if (cut_loop(cell, loop, chains, stage_, [](const Vec2&, const Vec2&) { return false; }) &&
         is_inside(cell, loop[0]))
       loops.push_back(loop);
   if (!chains.empty()) {
     join_chains(cell, chains, loops);
-  } else if (domain_.contains(cell[0])) {
+  } else if (is_in_moved(loops_, cell[0])) {
     loops.insert(loops.begin(), std::move(cell));
   }
+  for (Loop& loop : loops) scale(loop, 1 / unit_);
   return loops;
 }
 

@@ -32,11 +32,12 @@ class CurvedCells {
   void add_side(Index site, Index edge, Loop& loop) const;
 
   const Voronoi2d& diagram_;
-  const PlanarDomain& domain_;
   const DomainMap& map_;
   const JobStage& stage_;
   double tolerance_, distance_;  ///< of a cell's points from its curves
   Vec2 low_, high_;              ///< the domain's box
+  std::vector<Loop> loops_;      ///< the domain's, times the unit
+  double unit_ = 1;              ///< a power of two, by which products of tiny coordinates are numbers
 };
 
 }  // namespace saddleback::voronoi2d
