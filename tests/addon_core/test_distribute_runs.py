@@ -3,6 +3,7 @@
 
 import re
 import time
+import tracemalloc
 from dataclasses import fields, replace
 from types import SimpleNamespace
 
@@ -351,3 +352,20 @@ def test_counts_of_shapes_are_told_in_one_sentence_or_none():
     assert distribute_texts.made_smaller(0) == () == distribute_texts.left_out(0)
     assert distribute_texts.made_smaller(1) == ("1 shape is drawn smaller, not to pass through others",)
     assert distribute_texts.left_out(1)[0].startswith("1 shape is missing")
+
+
+def test_more_faces_than_memory_has_room_for_are_refused_before_they_are_made(monkeypatch):
+    monkeypatch.setattr(distribute_runs, "MOST_FACES", 10_000)
+    with pytest.raises(BadInputError, match=r"60 bent copies would have 11,\d+ faces; lay fewer or larger ones"):
+        run(make_bent=True)
+    assert len(run(make_bent=False, make_instances=True).placed.points) == 60
+    assert run(make_bent=True, count=40).bent is not None
+
+
+def test_bent_copies_take_little_more_memory_on_their_way_than_at_its_end():
+    run(make_bent=True, count=10)  # what is imported and kept on the way
+    tracemalloc.start()
+    found = run(make_bent=True, count=2000)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 400 * len(found.bent.polygon_copy)

@@ -58,6 +58,7 @@ from .shapes.shape_templates import ShapeTemplate, sized, uv_of_classes
 from .surfaces.local_frames import anchored
 
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
+MOST_FACES = 10_000_000  # of all bent copies, which take 0.8 KB each on their way
 VALUES_REACH = 1.0  # radii of the largest shapes: how far beyond outlines vertices know of them
 
 
@@ -70,6 +71,8 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     settings, surface = request.settings, request.surface
     laid = laid_of(request, progress, cache)
     mesh, result = laid.mesh, laid.result
+    if settings.make_bent:
+        _check_faces(laid, surface.name)
     mapped = _mapped(laid, request, progress, cache)
     whole, templates = _drawn(laid, mapped, request, progress, cache)
     drawn = whole.mapped
@@ -230,6 +233,17 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     if not len(placed.result.placements):
         raise BadInputError(f"'{surface.name}': {no_room(laid)}")
     return laid
+
+
+def _check_faces(laid: Laid, name: str) -> None:
+    """Refuses more than memory is likely to have room for, before any of it is taken."""
+    each = [0 if template.solid is None else len(template.solid.offsets) - 1 for template in laid.templates]
+    faces = int(np.array(each)[laid.result.placements.shape].sum())
+    if faces > MOST_FACES:
+        raise BadInputError(
+            f"'{name}': {len(laid.result.placements):,} bent copies would have {faces:,} faces; lay fewer or larger "
+            "ones, or Instances in place of Bent Copies"
+        )
 
 
 def _mapped(laid: Laid, request: DistributeRequest, progress: Progress, cache: Cache) -> Any:

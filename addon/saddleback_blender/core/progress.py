@@ -12,6 +12,12 @@ BLOCK = 1 << 15  # rows between two looks at whether the run is to stop
 BEATS, MOST_DOTS = 4, 3  # dots move so many times a second; as many as a native Job shows
 
 
+def blocks(count: int) -> Iterator[slice]:
+    """Slices that make up `count` rows, few enough in each that what is made of them on the way takes little memory."""
+    for begin in range(0, max(count, 1), BLOCK):
+        yield slice(begin, begin + BLOCK)
+
+
 class Progress:
     """Shows a run to another thread. The thread that computes opens stages; any other reads, or cancels.
 
@@ -84,9 +90,9 @@ class Progress:
 
     def blocks(self, count: int) -> Iterator[slice]:
         """Slices that make up `count` rows, few enough in each that a run that is to stop does so between two."""
-        for begin in range(0, max(count, 1), BLOCK):
+        for rows in blocks(count):
             self.check()
-            yield slice(begin, begin + BLOCK)
+            yield rows
 
     @contextmanager
     def stage(self, end: float, text: str, can_settle: bool = False) -> Iterator[Any]:

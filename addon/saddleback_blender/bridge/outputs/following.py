@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from ...core import cache, runs
 from ...core.graphs import mesh_of_surface
+from ...core.progress import blocks
 from ...core.requests import Surface
 from ...core.results import Anchors, Reals
 from ...core.surfaces.ground import Ground
@@ -89,30 +90,35 @@ class Follower:
         if rotations is not None:
             vectors |= zip((X_ATTRIBUTE, Z_ATTRIBUTE), axes_of(rotations), strict=True)
         # All that is read, before anything is written: Blender would evaluate what was made so far each time.
-        rest, frames = self._rest, self._frames(anchors) if vectors else None
+        rest, seen = self._rest, self._seen(anchors, vectors) if vectors else {}
         _remove_keeper(self._source, item)
         keeper = _new_keeper(self._source, item, len(anchors.corners)) if item.type == "CURVE" else None
-        self._write(item.data if keeper is None else keeper.data, anchors, vectors, frames)
+        self._write(item.data if keeper is None else keeper.data, anchors, seen)
         known = Known(is_shifted, rotations is not None, keeper)
         host = Host.of(self._source, place, self._surface.vertex_count, rest.otherwise, rest.area, rest.places)
         set_following(item, host, known)
 
-    def _write(self, mesh: bpy.types.Mesh, anchors: Anchors, vectors: dict[str, Reals], frames: Reals | None) -> None:
+    def _write(self, mesh: bpy.types.Mesh, anchors: Anchors, vectors: dict[str, Reals]) -> None:
         """Gives a mesh's vertices what the node group asks for: where they stand, and vectors as seen from there."""
         for i, name in enumerate(CORNER_ATTRIBUTES):
             set_attribute(mesh, name, "POINT", np.ascontiguousarray(anchors.corners[:, i]))
         set_attribute(mesh, WEIGHTS_ATTRIBUTE, "POINT", anchors.barycentric)
-        if frames is not None:
-            for name, values in vectors.items():
-                set_attribute(mesh, name, "POINT", in_frames(frames, values))
+        for name, values in vectors.items():
+            set_attribute(mesh, name, "POINT", values)
         if self._rest.places is not None and self._rest.otherwise == BY_PLACE:
             write_rest(mesh, self._rest.places, anchors.corners, anchors.barycentric, bool(vectors))
 
-    def _frames(self, anchors: Anchors) -> Reals:
-        """(n, 3, 3) axes of the surface where points stand, as the node group finds them."""
-        first, second = (self._surface.vertices[self._surface.compact(anchors.corners[:, i])] for i in range(2))
-        normals = np.einsum("ni,nij->nj", anchors.barycentric, self._normals[anchors.corners])
-        return frames_along(second - first, normals @ np.linalg.inv(scale_of(self._source)))
+    def _seen(self, anchors: Anchors, vectors: dict[str, Reals]) -> dict[str, Reals]:
+        """Vectors (n, 3) by the axes of the surface where points stand, as the node group finds them."""
+        seen, scale = {name: np.empty_like(values) for name, values in vectors.items()}, scale_of(self._source)
+        for rows in blocks(len(anchors.corners)):
+            corners = anchors.corners[rows]
+            first, second = (self._surface.vertices[self._surface.compact(corners[:, i])] for i in range(2))
+            normals = np.einsum("ni,nij->nj", anchors.barycentric[rows], self._normals[corners])
+            frames = frames_along(second - first, normals @ np.linalg.inv(scale))
+            for name, values in vectors.items():
+                seen[name][rows] = in_frames(frames, values[rows])
+        return seen
 
     @cached_property
     def _normals(self) -> Reals:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..progress import Progress
+from ..progress import Progress, blocks
 from ..results import BentCopies, Indices, Reals
 from ..settings import DistributeSettings
 from ..surfaces.normals import normals_at
@@ -119,6 +119,7 @@ def bent_copies(
         if number not in mapped.failures and templates[shape].solid is None:
             height = settings.thickness or THICKNESS * float(scales[number])
             pieces.append(_raised(mesh, mapped.patch(number), height, bool(mirrored[number]), number, shape, template))
+    del bent  # larger than what is made of it
     return _joined(pieces)
 
 
@@ -145,7 +146,7 @@ def _joined(pieces: list[_Piece]) -> BentCopies:
     counts = [len(piece.offsets) - 1 for piece in pieces]
     firsts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
     sizes = [np.diff(piece.offsets) for piece in pieces]
-    corners = [piece.corners + first for piece, first in zip(pieces, firsts, strict=False)]
+    corners = [piece.corners + first.astype(np.int32) for piece, first in zip(pieces, firsts, strict=False)]
     return BentCopies(
         vertices=_rows([piece.vertices for piece in pieces], 3),
         faces=_row([piece.faces for piece in pieces], np.int32),
@@ -161,12 +162,12 @@ def _joined(pieces: list[_Piece]) -> BentCopies:
 
 
 def _rows(parts: list[Reals], width: int) -> Reals:
-    rows: Reals = np.concatenate(parts) if parts else np.empty((0, width))
+    rows: Reals = parts[0] if len(parts) == 1 else np.concatenate(parts) if parts else np.empty((0, width))
     return rows
 
 
 def _row(parts: list[Any], dtype: type[np.generic]) -> Any:
-    return (np.concatenate(parts) if parts else np.empty(0)).astype(dtype)
+    return (np.concatenate(parts) if parts else np.empty(0)).astype(dtype, copy=False)
 
 
 def _of_solid(bent: Bent, mapped: Any, solid: Solid, shape: int, copies: NDArray[np.int64]) -> _Piece:
@@ -188,7 +189,7 @@ def _of_solid(bent: Bent, mapped: Any, solid: Solid, shape: int, copies: NDArray
     row, triangle = np.nonzero(parts != 1)
     is_whole[row, polygon[triangle]] = False
     # Blender parts one that folds along another diagonal, where it may pass through what it was clear of.
-    folded = _is_folded(bent.vertices[bent.triangles[mine]], owner, source, polygon)
+    folded = _is_folded(bent.vertices, bent.triangles[mine], owner, source, polygon)
     is_whole[owner[folded], polygon[source[folded]]] = False
     whole_row, whole = np.nonzero(is_whole)
     is_mirrored = np.asarray(mapped.placements.mirrored)[copies][whole_row]
@@ -215,13 +216,19 @@ def _of_solid(bent: Bent, mapped: Any, solid: Solid, shape: int, copies: NDArray
     )
 
 
-def _is_folded(corners: Reals, owner: NDArray[np.int64], source: Indices, polygon: Indices) -> NDArray[np.bool_]:
-    """(t,) triangles (t, 3, 3) that do not face as the first one of their polygon does, given whose each is."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+def _is_folded(
+    vertices: Reals, triangles: Indices, owner: NDArray[np.int64], source: Indices, polygon: Indices
+) -> NDArray[np.bool_]:
+    """(t,) triangles that do not face as the first one of their polygon does, given whose each is."""
+    normals, found = np.empty((len(triangles), 3)), np.empty(len(triangles), np.bool_)
+    for rows in blocks(len(triangles)):
+        corners = vertices[triangles[rows]]
+        normals[rows] = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     row = np.zeros((owner.max(initial=-1) + 1) * len(polygon), np.int64)
     row[owner * len(polygon) + source] = np.arange(len(source))
     first = row[owner * len(polygon) + np.searchsorted(polygon, polygon)[source]]
-    found: NDArray[np.bool_] = np.einsum("ij,ij->i", normals, normals[first]) <= 0
+    for rows in blocks(len(triangles)):
+        found[rows] = np.einsum("ij,ij->i", normals[rows], normals[first[rows]]) <= 0
     return found
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..progress import Progress
+from ..progress import Progress, blocks
 from ..requests import Surface
 from ..results import Anchors, Indices, Reals
 
@@ -31,13 +31,14 @@ def rest_anchors(rest: Reals, corners: Indices, barycentric: Reals, has_steps: b
 
     `rest` (V, 3) its vertices' places, `corners` (n, 3) of the triangles, `barycentric` (n, 3). O(n).
     """
-    places = rest[corners]
-    feet: Reals = np.einsum("ni,nij->nj", barycentric, places)
-    if not has_steps:
-        return (feet,)
-    sides = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2)
-    steps: Reals = REST_STEP * sides.min(axis=1)[:, None] * _unit(places[:, 1] - places[:, 0])
-    return feet, steps
+    found = np.empty((2 if has_steps else 1, len(corners), 3))
+    for rows in blocks(len(corners)):
+        places = rest[corners[rows]]
+        found[0, rows] = np.einsum("ni,nij->nj", barycentric[rows], places)
+        if has_steps:
+            sides = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2)
+            found[1, rows] = REST_STEP * sides.min(axis=1)[:, None] * _unit(places[:, 1] - places[:, 0])
+    return tuple(found)
 
 
 def in_frames(frames: Reals, vectors: Reals) -> Reals:
