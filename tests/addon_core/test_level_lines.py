@@ -4,9 +4,13 @@
 import numpy as np
 import pytest
 
+from saddleback_blender.core import native, runs
+from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
+from saddleback_blender.core.requests import DistanceRequest, Surface
 from saddleback_blender.core.settings import DistanceSettings
 from saddleback_blender.core.solids.level_lines import MOST_LEVELS, isoline_levels, isoline_spacing, level_lines
+from saddleback_blender.core.surfaces.halved_edges import HalvedEdges
 from tests import meshes
 
 
@@ -106,3 +110,30 @@ def test_levels():
     with pytest.raises(BadInputError, match=r"'A': isolines every 0.5 up to 1e\+04 would be more than 2,000 lines"):
         isoline_levels(by_spacing, 1e4, "A")
     assert len(isoline_levels(by_spacing, 0.5 * MOST_LEVELS, "A")) == MOST_LEVELS - 1
+
+
+@pytest.mark.parametrize("quality", ["EXACT", "FAST"])
+def test_circles_on_a_face_that_is_wide_beside_their_spacing(quality):
+    """A square of two triangles, and a source at its middle, as far from all vertices: there were no lines at all."""
+    corners = np.array([(-1.0, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
+    surface = Surface("Plate", corners, np.array([(0, 1, 2), (0, 2, 3)], np.int32), 4)
+    settings = DistanceSettings(quality=quality, make_isolines=True, isolines_by="COUNT", isoline_count=9)
+    request = DistanceRequest(surface, settings, np.zeros((1, 3)))
+    result = runs.distance(request, runs.new_progress(), Cache(2**20))
+    assert result.vertex_distance == pytest.approx(2**0.5, rel=5e-3)
+    lines = result.isolines
+    assert len(set(lines.level)) == 9
+    for (part, is_closed), level in zip(lines.lines(), lines.level, strict=True):
+        assert np.linalg.norm(lines.points[part], axis=1) == pytest.approx(level, abs=0.02)
+        assert is_closed == (level < 1.0)
+
+
+def test_halved_edges_are_where_they_are_said_to_be():
+    vertices, triangles = meshes.icosphere(1)
+    halved = HalvedEdges.of(vertices, triangles, 2)
+    assert len(halved.triangles) == 16 * len(triangles) and (halved.vertices[: len(vertices)] == vertices).all()
+    corners = vertices[triangles[halved.faces]]
+    assert np.allclose(np.einsum("vi,vij->vj", halved.barycentric, corners), halved.vertices)
+    mesh = native.load().Mesh(halved.vertices, halved.triangles)  # every edge between two triangles
+    assert mesh.genus == 0 and not len(mesh.boundary_loops)
+    assert mesh.area == pytest.approx(native.load().Mesh(vertices, triangles).area)

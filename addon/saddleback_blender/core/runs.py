@@ -20,15 +20,14 @@ from .density_runs import density_of
 from .fields.curve_points import curves_on_surface, points_along
 from .flowing_cells import UNSEEN
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
+from .isolines import isolines_of
 from .lengths import RIB_SHARE
 from .metrics import measured
 from .progress import Progress
 from .requests import Density, DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
 from .results import CellsResult, DistanceResult, Dual, LampShell, Reals, SurfacePolygons
-from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
 from .solids.crossings import find_crossings
-from .solids.level_lines import LevelLines, isoline_levels, level_lines
 from .solids.rib_surface import RibShape, RibSurface, rib_surface
 from .solids.shell_solid import thicken
 from .surfaces.duals import dual_of, figures_of, finished
@@ -152,14 +151,14 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
         graph = graph_of_surface(surface, mesh, guide, request.threads, request.disk, progress, cache)
     limit = settings.limit if settings.limit > 0 else np.inf
 
-    def solve() -> Reals:
-        curves: list[Any] = []
-        points: Any | None
+    def found() -> tuple[list[Any], Any | None]:
         if isinstance(sources, tuple):
             with progress.stage(0.6, "following the curves"):
-                curves, points = curves_on_surface(mesh, graph, sources)
-        else:
-            points = surface_points(mesh, sources)
+                return curves_on_surface(mesh, graph, sources)
+        return [], surface_points(mesh, sources)
+
+    def solve() -> Reals:
+        curves, points = found()
         if choice.is_exact:
             with progress.stage(0.9, "measuring distances") as job:
                 places = points_along(mesh, curves, points) if curves else points
@@ -172,10 +171,24 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
                     values = np.minimum(values, graph.distances(part, limit=limit, job=job))
         return values
 
+    def between(targets: Any) -> Reals:
+        """At other points than vertices."""
+        (curves, points), sb = found(), native.load()
+        values = np.full(len(targets.faces), np.inf)
+        if choice.is_exact:
+            with progress.stage(0.95, "measuring distances between vertices") as job:
+                field = sb.ExactField(mesh, points_along(mesh, curves, points) if curves else points, job=job)
+            values = field.distance_to(targets)
+        for part in () if choice.is_exact else (curves, points):
+            if part is not None and len(part):
+                with progress.stage(0.95, "measuring distances between vertices") as job:
+                    values = np.minimum(values, graph.distances_to(part, targets, job=job))
+        return np.where(values > limit, np.inf, values)
+
     key = ("distance", choice.name(surface), _digest_of(sources, limit))
     values = cache.get(key, solve, lambda array: array.nbytes)
     progress.check()
-    isolines = _isolines(surface, values, settings, progress) if settings.make_isolines else None
+    isolines = isolines_of(surface, mesh, values, between, settings, progress) if settings.make_isolines else None
     return DistanceResult(surface.spread(values, np.inf, values), isolines)
 
 
@@ -196,13 +209,6 @@ def _digest_of(sources: Points | tuple[Polyline, ...], limit: float) -> str:
     if not isinstance(sources, tuple):
         return digest(sources, limit)
     return digest(limit, *(part for curve in sources for part in (curve.points, curve.closed)))
-
-
-def _isolines(surface: Surface, values: Reals, settings: DistanceSettings, progress: Progress) -> LevelLines:
-    farthest = float(values[np.isfinite(values)].max(initial=0.0))
-    levels = isoline_levels(settings, farthest, surface.name)
-    with progress.stage(0.98, "following the isolines"):
-        return level_lines(surface.vertices, surface.triangles, values, levels)
 
 
 @dataclass(frozen=True)
