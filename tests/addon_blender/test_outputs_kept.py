@@ -145,6 +145,15 @@ def test_a_duplicate_of_an_output_stays_the_artist_s_when_the_original_is_delete
     assert bpy.data.objects[name] == kept and len(kept.data.polygons) == polygons
 
 
+def test_an_output_with_a_number_is_none_s_duplicate_where_its_name_is_taken():
+    """As where an object and what was made of it are appended to a file that has such a name."""
+    source = sphere_source()
+    made = write_all(source)
+    made[1].name = "Ball Cells.001"
+    add_object("Ball Cells", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], active=False)
+    assert write_all(source, count=7)[1] == made[1]
+
+
 def test_renaming_everything_and_reopening_changes_nothing(tmp_path):
     source = sphere_source()
     for item in write_all(source):

@@ -306,9 +306,13 @@ def _original(source: bpy.types.Object, candidates: list[bpy.types.Object]) -> b
 
 def _is_duplicate(source: bpy.types.Object, item: bpy.types.Object) -> bool:
     """Tells an artist's duplicate of an output by Blender's number behind the name that we gave the output, while the
-    source is called as it was then: one that is a duplicate itself has outputs with numbers.
+    source is called as it was then: one that is a duplicate itself has outputs with numbers. So has one that was
+    appended where another object has the name.
     """
     name = str(item.get(NAME, ""))
+    other = bpy.data.objects.get(name)
+    if other is not None and other.get(SOURCE) != item.get(SOURCE):
+        return False
     return name.startswith(f"{source.name} ") and bool(re.fullmatch(re.escape(name) + r"\.\d{3,}", item.name))
 
 
