@@ -36,7 +36,8 @@ constexpr double k_mostly_odd = 0.4;
 constexpr std::array<double, 10> k_batches{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
 constexpr std::array<double, 4> k_sweeping_batches{80, 40, 40, 40};
 constexpr std::size_t k_searching_batches = 6, k_searching_sweeps = 2;
-constexpr double k_most_drops = 1e6;  ///< on a face
+constexpr double k_most_drops = 1e6;                  ///< on a face
+constexpr double k_few_drops = 2e6, k_few_each = 20;  ///< on all, and for each copy
 /// Bounds how many are held at a time; of shapes that are tiny beside the surface there would be more than memory
 /// holds.
 constexpr std::size_t k_drops_held = 4'000'000, k_most_cells = 1 << 20;
@@ -178,16 +179,22 @@ void MaximalSampling::draw_candidates(Index face, int try_batch, double per_area
   }
 }
 
+/// Returns how many candidates a batch draws, or somewhat more.
+double MaximalSampling::expected_drops(double per_area) const {
+  const Index face_count = mesh_->face_count();
+  std::vector<double> sums((static_cast<std::size_t>(face_count) + k_together - 1) / k_together, 0);
+  parallel_for(face_count, options_->threads, k_together,
+               [&](Index f, int) { sums[f / k_together] += 1 + mean_drops(f, per_area); });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
 /// Tries them in the order of their keys, as many at a time as are held.
 void MaximalSampling::try_batch(int number, double per_area, const JobStage& stage) {
   constexpr std::size_t k_bins = 4096;
   const auto draw = [&](Index face, auto&& visit) { draw_candidates(face, number, per_area, stage, visit); };
   const Index face_count = mesh_->face_count();
-  std::vector<double> expected_of((static_cast<std::size_t>(face_count) + k_together - 1) / k_together, 0);
-  parallel_for(face_count, options_->threads, k_together,
-               [&](Index f, int) { expected_of[f / k_together] += 1 + mean_drops(f, per_area); });
   // Few are all held at once, in one bin.
-  const double expected = std::accumulate(expected_of.begin(), expected_of.end(), 0.0);
+  const double expected = expected_drops(per_area);
   const std::size_t bin_count = expected < static_cast<double>(k_drops_held) ? 1 : k_bins;
   const auto bin_of = [&](double key) {
     return static_cast<std::size_t>(std::clamp(key, 0.0, 1.0) * static_cast<double>(bin_count - 1));
@@ -222,7 +229,16 @@ void MaximalSampling::try_batch(int number, double per_area, const JobStage& sta
 DistributionStop MaximalSampling::sample_at_random(const JobStage& stage) {
   std::span<const double> batches = options_->packing > 0 ? std::span<const double>(k_sweeping_batches) : k_batches;
   if (searches()) batches = batches.first(options_->packing > 0 ? k_searching_sweeps : k_searching_batches);
-  const double area = rules_->mean_area();
+  const double area = rules_->mean_area(), first = batches.front() / area;
+  // Numbers of tiny copies are mostly met by far fewer candidates than would cover the surface.
+  double few = first;
+  const double wanted = std::accumulate(options_->counts.begin(), options_->counts.end(), 0.0);
+  const double enough = std::max(k_few_drops, k_few_each * wanted) + mesh_->face_count();
+  while (wanted > 0 && options_->packing <= 0 && expected_drops(few) > enough) few /= 2;
+  if (few < first) {
+    weigh_kinds();
+    try_batch(static_cast<int>(k_batches.size()), few, stage.part(0, 0.1));
+  }
   bool is_tired = false;
   for (std::size_t i = 0; i < batches.size() && insertion_->is_any_wanted(); ++i) {
     const auto part = [&](double share) {

@@ -59,6 +59,7 @@ class MaximalSampling {
   double most_crowding(Index face) const;
   double mean_drops(Index face, double per_area) const;
   std::uint64_t kinds_in(Index face) const;
+  double expected_drops(double per_area) const;
   void try_batch(int number, double per_area, const JobStage& stage);
   template <class Visit>
   void draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage, Visit&& visit) const;

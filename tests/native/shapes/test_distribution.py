@@ -361,6 +361,17 @@ def test_tiny_shapes_can_be_cancelled_at_once(options: dict[str, object]) -> Non
     assert 0 < waited < 0.5
 
 
+@pytest.mark.parametrize("options", [{}, {"density": np.arange(162.0)}, {"counts": [500, 500]}])
+def test_few_tiny_copies_take_no_longer_the_tinier_they_are(options: dict[str, object]) -> None:
+    """By number they need a few candidates each, not as many as cover the surface: a thousand took 10 s."""
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    shapes = [sb.Shape.disk()] * (2 if "counts" in options else 1)
+    began = time.process_time()
+    laid = sb.distribute(mesh, shapes, size=1e-5, threads=1, **{"counts": 1000, **options})
+    assert len(laid.placements) == 1000
+    assert time.process_time() - began < 2
+
+
 @pytest.mark.parametrize("unit", [1e200, 1e-300, 1e-310])
 def test_only_ratios_of_densities_count(unit: float) -> None:
     mesh = sb.Mesh(*meshes.icosphere(3))
