@@ -52,6 +52,18 @@ def test_distance_to_a_curve(kind):
     assert item.saddleback.distance.sources_object == curve
 
 
+@pytest.mark.parametrize("modifier", ["", "SMOOTH"])
+def test_a_curve_without_splines_is_told(modifier):
+    """As where an artist deleted all points: Blender makes no mesh of it, and the run ended in a traceback."""
+    item = grid(n=4)
+    curve = bpy.data.objects.new("Line", bpy.data.curves.new("Line", "CURVE"))
+    bpy.context.scene.collection.objects.link(curve)
+    if modifier:
+        curve.modifiers.new("Again", modifier)
+    item.saddleback.distance.sources_object = curve
+    refuse("has no spline of two points to measure from; draw one", sources="CURVES", sources_object="Line")
+
+
 def test_curves_of_a_collection_or_of_the_object_but_not_our_own():
     item = grid(n=12)
     add_curve("Left", "POLY", [(0, 0, 0), (0, 1, 0)], parent=item)

@@ -184,7 +184,8 @@ class CellsOperator(SurfaceOperator):
             self.report({"WARNING"}, warning)
         shell = "" if result.shell is None else shell_of(result.shell, *_units(context.scene))
         done = f"{_steps(result)}{_lost(result)}{_added(result)}{shell}"
-        return f"'{source.name}': {result.count} cells{self._parts}{done}"
+        cells = "1 cell" if result.count == 1 else f"{result.count} cells"
+        return f"'{source.name}': {cells}{self._parts}{done}"
 
     def lying(self) -> dict[str, bool]:
         """Cells without a height do."""

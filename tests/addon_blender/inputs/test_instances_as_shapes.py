@@ -45,6 +45,15 @@ def test_a_collection_instance_is_one_shape(hidden):
     assert len(bpy.data.objects) == 4
 
 
+def test_what_has_no_faces_in_it_is_left_out():
+    empty = kit()
+    empty.instance_collection.objects.link(bpy.data.objects.new("Line", bpy.data.curves.new("Line", "CURVE")))
+    bpy.context.view_layer.update()
+    ball = sphere("Ball", 4)
+    (template,) = read_templates(bpy.context, ball, DistributeSettings(shapes="COLLECTION", shapes_collection="Shapes"))
+    assert len(template.solid.offsets) == 13
+
+
 def test_its_copies_have_its_materials():
     kit()
     ball = sphere("Ball", 4)

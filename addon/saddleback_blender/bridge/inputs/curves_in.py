@@ -146,7 +146,9 @@ def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] 
     return lines
 
 
-def _lines(item: bpy.types.Object, mesh: bpy.types.Mesh) -> list[Polyline]:
+def _lines(item: bpy.types.Object, mesh: bpy.types.Mesh | None) -> list[Polyline]:
+    if mesh is None:  # of a curve without splines Blender makes none
+        return []
     places = to_world(item, compat.read_positions(mesh))
     return [
         Polyline(places[numbers], closed) for numbers, closed in chains(len(places), compat.read_edge_vertices(mesh))

@@ -151,7 +151,7 @@ def _of_instance(
                 continue
             matrix = back @ np.array(instance.matrix_world, np.float64)
             mesh = instance.object.to_mesh()
-            if len(mesh.polygons):
+            if mesh is not None and len(mesh.polygons):  # Blender makes none of a curve without splines
                 places = compat.read_positions(mesh).astype(np.float64)
                 solids.append(_solid(mesh, (places @ matrix[:3, :3].T + matrix[:3, 3]) * scale))
                 materials = shown_materials(instance.object, mesh)
