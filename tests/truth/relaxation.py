@@ -113,6 +113,46 @@ def even_cells(mesh: sb.Mesh, rng: Random) -> None:
         assert abs(energy - wanted) <= 1e-3 * wanted, f"energy {energy} for {wanted}"
 
 
+@guards("centroidal_voronoi", "CellCache", "RelaxationWatch")
+def even_cells_by_any_options(mesh: sb.Mesh, rng: Random) -> None:
+    """Whatever options go together: so many cells, an energy that never rises, fixed sites where they were, the cells
+    of the sites found anew. Threads, a job, a cache and a watch change no bit.
+    """
+    if mesh.component_count > 40:
+        return
+    graph = sb.SaddleVertexGraph(mesh, threads=1)
+    count = mesh.component_count + int(rng.integers(1, 8))
+    sites = sb.sample(mesh, count, seed=int(rng.integers(99)), one_per_component=True)
+    curve = sb.SurfaceCurve(mesh, mesh.triangles[rng.integers(mesh.face_count), :2])
+    options: dict[str, object] = {"max_iterations": int(rng.integers(0, 5))}
+    likely = {
+        "method": "lloyd", "tolerance": 0.0, "annealing": 2, "least_move": 1e-2, "closed_ball": True,
+        "density": 0.1 + rng.random(mesh.vertex_count), "curves": [curve],
+    }  # fmt: skip
+    options |= {name: value for name, value in likely.items() if rng.random() < 0.3}
+    fixed = np.flatnonzero(rng.random(count) < 0.2)
+    if rng.random() < 0.3:
+        options |= {"count": count, "seed": int(rng.integers(9)), "starts": int(rng.integers(1, 3))}
+    else:
+        options |= {"sites": sites, "fixed": fixed}
+        if "curves" in options:
+            options["held"] = np.where(np.isin(np.arange(count), fixed) | (rng.random(count) < 0.6), -1, 0)
+    job = sb.Job()
+    beside: dict[str, object] = {"job": job, "watch": sb.RelaxationWatch(), "return_when_cancelled": True}
+    if "closed_ball" not in options:  # whose exchanges look farther about cells, which a cache then knows
+        beside["cache"] = sb.CellCache()
+    made = sb.centroidal_voronoi(graph, threads=1, **options)  # type: ignore[arg-type]
+    again = sb.centroidal_voronoi(graph, threads=2, **options, **beside)  # type: ignore[arg-type]
+    assert made == again
+    assert job.fraction == 1
+    assert len(made.sites) == count
+    assert len(made.energy) == made.iterations + 1
+    assert (np.diff(made.energy) <= 0).all()
+    if "sites" in options:
+        assert np.array_equal(made.sites.positions(mesh)[fixed], sites.positions(mesh)[fixed])
+    assert np.array_equal(made.cells.areas, sb.geodesic_voronoi(graph, made.sites).areas)
+
+
 def points_of_a_part(mesh: sb.Mesh, rng: Random) -> tuple[sb.SurfacePoints, Floats]:
     """A few points of one part, and weights."""
     parts = mesh.components[mesh.triangles[:, 0]]
