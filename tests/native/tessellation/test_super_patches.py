@@ -200,7 +200,7 @@ def test_a_tolerance_is_a_length_that_no_side_leaves() -> None:
         ({"error": 0.0}, "error: wanted a positive length, got 0.0"),
         ({"error": float("nan")}, "error: wanted a positive length, got nan"),
         ({"count": 3}, "count: 3 cells for 6 parts between sharp edges; use more, or a larger `sharp`"),
-        ({"count": 8, "sharp": -1.0}, "angle: wanted radians from 0 to pi"),
+        ({"count": 8, "sharp": -1.0}, "sharp: wanted radians from 0 to pi"),
         ({"count": 8, "bend": -1.0}, "bend: wanted a number of 0 or more"),
     ],
 )
