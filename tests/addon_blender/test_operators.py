@@ -7,6 +7,7 @@ import pytest
 from scenes import add_object, attribute, grid, grid_arrays, select, sphere
 
 from saddleback_blender import jobs
+from saddleback_blender.bridge.outputs.out_collection import find_output
 from saddleback_blender.core import cache
 
 QUICK = {"count": 12, "iterations": 3, "k": 20}
@@ -318,3 +319,16 @@ def test_distance_to_the_edge_and_local_uv_are_written_where_wanted():
     assert away.max() == pytest.approx(0.5, abs=1e-5) and away.min() < 0.1
     with pytest.raises(RuntimeError, match="two attributes are to be called 'saddleback_cell'"):
         bpy.ops.saddleback.tessellate(**QUICK, write_edge_distance=True, edge_distance_attribute="saddleback_cell")
+
+
+def test_cells_are_tessellated_again():
+    """An output's own attribute of the default name was another kind that refused the run: cells of cells."""
+    source = sphere()
+    bpy.ops.saddleback.tessellate(count=20, make_cells=True)
+    cells = find_output(source, "cells")
+    bpy.context.view_layer.objects.active = cells
+    source.select_set(False)
+    cells.select_set(True)
+    assert bpy.ops.saddleback.tessellate(count=60, make_cells=True) == {"FINISHED"}
+    assert len(np.unique(attribute(cells, "saddleback_cell"))) == 60
+    assert find_output(cells, "cells") is not None

@@ -10,6 +10,7 @@ from ... import compat
 from ...blocks import is_editable
 from ...core.errors import BadInputError
 from ..inputs.mesh_in import mesh_of
+from ..tokens import ROLE
 from .following import Follower
 from .lifting import lift
 from .out_attributes import belongs_to_other_layer, recorded
@@ -83,9 +84,11 @@ def check_attribute_names(
                 f"'{source.name}': the attribute '{name}' is another layer's: choose another name for the {label}"
             )
         old = source.data.attributes.get(name)
+        is_made_by_us = ROLE in source and name.startswith("saddleback_")  # cells on an output's cells
         if (
             old is not None
             and name not in recorded(source.data)
+            and not is_made_by_us
             and (old.domain != domain or old.data_type != types[prop])
         ):
             raise BadInputError(
