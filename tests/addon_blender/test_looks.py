@@ -420,8 +420,7 @@ def monkey():
     return bpy.context.active_object
 
 
-@pytest.mark.parametrize("look", ["SCALES", "FEATHERS"])
-@pytest.mark.parametrize("make", [strip, monkey])
+@pytest.mark.parametrize(("look", "make"), [("SCALES", strip), ("SCALES", monkey), ("FEATHERS", strip)])
 def test_small_ones_lie_where_skin_would_be_bare(look, make):
     """Along borders and where sharp edges have others drawn smaller."""
     item = make()
