@@ -53,6 +53,7 @@ def test_random_input_meets_the_truths():
         ("cells_exact.check_borders_are_nearest", 1000020354905),
         ("cells_exact.check_cells_without_places", 1000020332442),
         ("cells_exact.check_borders_are_nearest", 612),  # straight on at a corner, another way beside it
+        ("mapped.solids_unroll", 1000001005532),  # an edge farthest from the surface between two samples
         ("disks.inset_disks", 1000020335261),  # a twin hidden by a weight as large as their distance
         ("surfaces.graphs_without_places", 1000020262499),  # far ends of thin tubes, near each other in space
         ("cells.cells_of_few_sites", 123091566),  # told in single precision to be as near as another way

@@ -121,11 +121,14 @@ SurfaceFit::Peak SurfaceFit::peak_of_edge(const Vertex& a, const Vertex& b) {
     const double along = static_cast<double>(i) / (count + 1), height = miss(along);
     if (height > peak.height) peak.height = height, peak.along = along;
   }
-  if (peak.height <= tolerance_) return peak;
+  // Between samples the surface may be as far again as at the best of them.
+  if (peak.height <= 0.5 * tolerance_) return peak;
   double low = peak.along - 1.0 / (count + 1), high = peak.along + 1.0 / (count + 1);
   for (int i = 0; i < k_search_steps; ++i) {
     const double left = low + 0.382 * (high - low), right = high - 0.382 * (high - low);
-    (miss(left) > miss(right) ? high : low) = miss(left) > miss(right) ? right : left;
+    const double at_left = miss(left), at_right = miss(right);
+    peak.height = std::max({peak.height, at_left, at_right});
+    (at_left > at_right ? high : low) = at_left > at_right ? right : left;
   }
   peak.along = std::clamp(0.5 * (low + high), k_margin, 1 - k_margin);
   return peak;
