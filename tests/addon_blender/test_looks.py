@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
-from scenes import add_object, attribute, grid, positions, select, sphere
+from scenes import add_object, attribute, dealt, grid, positions, select, sphere
 
 from saddleback_blender import finishes, jobs, looks, nodes
 from saddleback_blender.bridge.inputs.mesh_in import read_triangles
@@ -392,8 +392,17 @@ def passing_pairs(shown):
     return len(np.unique(np.sort(found[found[:, 0] != found[:, 1]], axis=1), axis=0))
 
 
-@pytest.mark.parametrize("look", ["SCALES", "FEATHERS"])
-@pytest.mark.parametrize("make", ["uv_sphere", "torus", "monkey"])
+@pytest.mark.parametrize(
+    ("look", "make"),
+    dealt(
+        ("SCALES", "uv_sphere"),
+        ("SCALES", "torus"),
+        ("SCALES", "monkey"),
+        ("FEATHERS", "torus"),
+        ("FEATHERS", "monkey"),
+        ("FEATHERS", "uv_sphere"),
+    ),
+)
 def test_scales_leave_no_skin_bare_and_meet_only_where_they_overlap(look, make):
     getattr(bpy.ops.mesh, f"primitive_{make}_add")()
     item = bpy.context.active_object
@@ -420,7 +429,7 @@ def monkey():
     return bpy.context.active_object
 
 
-@pytest.mark.parametrize(("look", "make"), [("SCALES", strip), ("SCALES", monkey), ("FEATHERS", strip)])
+@pytest.mark.parametrize(("look", "make"), dealt(("SCALES", strip), ("SCALES", monkey), ("FEATHERS", strip)))
 def test_small_ones_lie_where_skin_would_be_bare(look, make):
     """Along borders and where sharp edges have others drawn smaller."""
     item = make()

@@ -37,9 +37,6 @@ void check(const SaddleVertexGraph& graph, const QuerySources& sources, const Qu
 
 bool by_device(const QueryOptions& options) { return options.cuda_device >= 0; }
 
-/// Writes it for sentences: 12.3 GB.
-std::string in_gigabytes(double bytes) { return message(std::ceil(bytes / 1e8) / 10, " GB"); }
-
 DistanceFields allocate_fields(std::size_t count, std::size_t vertex_count) {
   const double bytes = static_cast<double>(count) * static_cast<double>(vertex_count) * sizeof(double);
   const std::string too_many = message("sources: ", count, " fields of ", vertex_count, " vertices take ",

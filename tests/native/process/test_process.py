@@ -338,6 +338,25 @@ except sb.InputError as error:
     assert "vertices take 0.7 GB, more than the memory there is (0." in done.stdout, done.stderr
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="the size of the process is read as Linux shows it")
+def test_windows_that_memory_cannot_keep_are_refused_while_some_is_left():
+    """On smooth surfaces their number for each vertex grows with the root of the vertices: 50 GB of a million."""
+    done = run("""
+import resource
+mesh = sb.Mesh(*meshes.icosphere(6))
+size = int(open("/proc/self/statm").read().split()[0]) * 4096 + (200 << 20)
+resource.setrlimit(resource.RLIMIT_AS, (size, size))
+try:
+    sb.ExactField(mesh, [0])
+except sb.InputError as error:
+    print(error)
+print(np.isfinite(sb.exact_distances(mesh, [0])).all())
+""")
+    assert "the windows of exact distances take 0." in done.stdout, done.stderr
+    assert "of 40962 vertices are reached, and 0." in done.stdout, done.stdout
+    assert done.stdout.strip().endswith("True"), done.stdout
+
+
 @posix
 @pytest.mark.parametrize("what", ["geodesic_voronoi", "voronoi_2d", "graph.paths"])
 def test_an_allocation_that_fails_is_a_memory_error(what):

@@ -30,10 +30,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "saddleback/error.h"
+
 #include "geodesics/exact/exact_windows.h"
 #include "geodesics/exact/window_trim.h"
 #include "geodesics/unfolding/common_length.h"
 #include "geodesics/unfolding/tips.h"
+#include "support/memory/memory.h"
 
 namespace saddleback {
 namespace {
@@ -167,13 +170,28 @@ void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
     }
     WindowBlock* const next = block->next;
     if (options_.keep_windows) {
-      queue_->keep(block);
-      kept_.push_back(block);
+      keep(block);
     } else {
       queue_->give_back(block);
     }
     block = next;
   }
+}
+
+/// Keeps a block as long as memory is left to copy all windows that are kept: smooth surfaces of a million vertices
+/// have a thousand windows for each.
+void ExactPropagation::keep(WindowBlock* block) {
+  constexpr std::size_t k_blocks_a_look = 1 << 12;  // 16 MB
+  queue_->keep(block);
+  kept_.push_back(block);
+  if (kept_.size() % k_blocks_a_look != 0) return;
+  const auto windows = static_cast<double>(kept_.size()) * WindowBlock::k_capacity;
+  const auto available = static_cast<double>(available_memory());
+  if (available <= 0 || windows * KeptWindows::k_bytes_each <= available) return;
+  throw InputError(message("mesh: the windows of exact distances take ", in_gigabytes(windows * sizeof(Window)),
+                           " when ", reached_count_, " of ", surface_.vertex_count(), " vertices are reached, and ",
+                           in_gigabytes(available),
+                           " of memory are left; exact_distances keeps no windows, a distance ", "graph needs none"));
 }
 
 /// Returns the share of the vertices that are reached; within a limit, the share of the disk behind the front if

@@ -37,7 +37,7 @@ class ExactPropagation {
   /// `sources` are checked and outlive this object.
   ExactPropagation(const ExactSurface& surface, const SurfacePoints& sources, const ExactPropagationOptions& options);
 
-  /// \throw Cancelled. Once.
+  /// \throw Cancelled, InputError where the windows to be kept take more memory than there is. Once.
   void run(const JobStage& stage);
 
   /// Infinity where no source reaches, or only beyond the limit.
@@ -63,6 +63,7 @@ class ExactPropagation {
   void start_in_face(const SourceInFace& place);
   void fetch(Index halfedge) const;
   void drain(WindowBlock* block, const JobStage& stage);
+  void keep(WindowBlock* block);
   double share_done() const;
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;

@@ -48,6 +48,7 @@ struct SightLine {
 /// Windows that some corner of their edge does not make needless, sorted by half-edge. 36 bytes each.
 class KeptWindows {
  public:
+  static constexpr std::size_t k_bytes_each = sizeof(KeptWindow) + sizeof(Index);
   /// \throw Cancelled.
   KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation, const JobStage& stage);
 

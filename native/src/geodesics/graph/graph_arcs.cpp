@@ -68,8 +68,6 @@ std::vector<Index> all_blocks(const ArcSearch& search) {
 // Shares of the time in which tables for waves are laid, until the end of each.
 constexpr double k_with_edges = 0.08, k_with_mesh = 0.87;
 
-std::string in_gigabytes(double bytes) { return message(std::max(0.1, std::round(bytes / 1e8) / 10), " GB"); }
-
 /// Vertices in sight of one, in the mean of a few all over the mesh. Their number grows like a power of that of the
 /// vertices looked at, which is estimated from disks of two sizes.
 double mean_in_sight(const ArcSearch& search, VisibleVertices& propagator, const JobStage& stage) {

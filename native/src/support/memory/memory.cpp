@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
+
+#include "saddleback/error.h"
 
 #if defined(_WIN32)
 #ifndef NOMINMAX  // libstdc++ defines it
@@ -17,6 +20,8 @@
 #endif
 
 namespace saddleback {
+
+std::string in_gigabytes(double bytes) { return message(std::ceil(bytes / 1e8) / 10, " GB"); }
 
 #if defined(_WIN32)
 
