@@ -83,8 +83,11 @@ py::array boundary_distance(const py::object& vertices, const py::object& triang
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const ArrayIn<Index> owners = as_indices(cells, "triangle_cell");
   const double farthest = as_real(limit, "limit");
-  return to_array(without_gil(
-      [&] { return cell_boundary_distance(points_of(xyz), triangles_of(indices), owners.values, farthest); }));
+  const JobIn job{py::none()};
+  return to_array(without_gil([&] {
+    return cell_boundary_distance(points_of(xyz), triangles_of(indices), owners.values, farthest,
+                                  JobStage(job, "Measuring distances to borders"));
+  }));
 }
 
 py::tuple refine(const py::object& fields, const py::object& triangles, const py::object& cells,
@@ -95,8 +98,10 @@ py::tuple refine(const py::object& fields, const py::object& triangles, const py
   const ArrayIn<double> wanted = as_reals(levels, "levels");
   const double most = as_real(tolerance, "tolerance");
   const auto width = static_cast<Index>(rows.array.shape(1));
+  const JobIn job{py::none()};
   BoundaryRefinement found = without_gil([&] {
-    return refine_to_cell_boundary(rows.values, width, triangles_of(indices), owners.values, wanted.values, most);
+    return refine_to_cell_boundary(rows.values, width, triangles_of(indices), owners.values, wanted.values, most,
+                                   JobStage(job, "Refining borders"));
   });
   const std::vector<py::ssize_t> shape{-1, width};
   return py::make_tuple(to_array(std::move(found.fields)).reshape(shape), to_array(std::move(found.triangles)),

@@ -284,7 +284,8 @@ py::object field_from_vectors(const py::object& mesh_object, const py::object& v
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const std::vector<Vec3> directions = as_vectors(vectors, "vectors");
   const int wanted = as_integer(symmetry, "symmetry");
-  return keeping(mesh_object, without_gil([&] { return field_of_vectors(mesh, wanted, directions); }));
+  const JobIn job{py::none()};
+  return keeping(mesh_object, without_gil([&] { return field_of_vectors(mesh, wanted, directions, job); }));
 }
 
 constexpr const char* k_of_turns_doc =
@@ -310,7 +311,8 @@ py::object field_from_turns(const py::object& mesh_object, const py::object& ang
   const int wanted = as_integer(symmetry, "symmetry");
   const ArrayIn<double> own = as_reals(angles, "angles", mesh.face_count());
   const ArrayIn<double> rows = as_points3(turns, "turns");
-  return keeping(mesh_object, without_gil([&] { return field_of_turns(mesh, wanted, own.values, rows.values); }));
+  const JobIn job{py::none()};
+  return keeping(mesh_object, without_gil([&] { return field_of_turns(mesh, wanted, own.values, rows.values, job); }));
 }
 
 py::object turned(const py::object& self, const py::object& angle) {
@@ -507,7 +509,8 @@ py::array spread(const py::object& mesh_object, const py::object& places, const 
 
 py::tuple curvatures_of(const py::object& mesh_object) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  PrincipalCurvatures found = without_gil([&] { return principal_curvatures(mesh); });
+  const JobIn job{py::none()};
+  PrincipalCurvatures found = without_gil([&] { return principal_curvatures(mesh, job); });
   return py::make_tuple(to_array(std::move(found.smallest)), to_array(std::move(found.largest)),
                         to_array(std::move(found.direction)));
 }

@@ -33,10 +33,11 @@ double least(const std::vector<double>& values) {
 TriangleQuality measure(const py::object& vertices, const py::object& triangles) {
   const ArrayIn<double> xyz = as_points3(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const JobIn job{py::none()};
   return without_gil([&] {
     const std::span positions(reinterpret_cast<const Vec3*>(xyz.values.data()), xyz.values.size() / 3);
     const std::span faces(reinterpret_cast<const Triangle*>(indices.values.data()), indices.values.size() / 3);
-    return triangle_quality(positions, faces);
+    return triangle_quality(positions, faces, job);
   });
 }
 

@@ -51,13 +51,13 @@ std::vector<Vec2> as_corners(const Mesh& mesh, std::span<const Vec2> uv) {
 }  // namespace
 
 struct Chart::Finder {
-  explicit Finder(const std::vector<Box<Vec2>>& boxes) : tree(boxes) {}
+  Finder(const std::vector<Box<Vec2>>& boxes, const JobStage& stage) : tree(boxes, stage) {}
   BoxTree<Vec2> tree;
 };
 
 Chart::Chart(const Mesh& mesh, std::span<const Vec2> uv, Job* job) : mesh_(&mesh), corners_(as_corners(mesh, uv)) {
   const JobStage stage(job, "Checking the map");
-  check_faces();
+  check_faces(stage);
   std::vector<Box<Vec2>> boxes;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Vec2 *corner = &corners_[3 * f], &a = corner[0], &b = corner[1], &c = corner[2];
@@ -65,7 +65,7 @@ Chart::Chart(const Mesh& mesh, std::span<const Vec2> uv, Job* job) : mesh_(&mesh
     area_ += 0.5 * twice_area(a, b, c);
   }
   stage.update(0.1);
-  finder_ = std::make_unique<Finder>(boxes);
+  finder_ = std::make_unique<Finder>(boxes, stage);
   check_overlaps(stage.part(0.3, 1));
 }
 
@@ -73,12 +73,13 @@ Chart::~Chart() = default;
 Chart::Chart(Chart&&) noexcept = default;
 Chart& Chart::operator=(Chart&&) noexcept = default;
 
-void Chart::check_faces() const {
+void Chart::check_faces(const JobStage& stage) const {
   for (Index h = 0; h < mesh_->halfedge_count(); ++h)
     if (!(corners_[h].array().abs() <= 1e60).all())  // products of four stay among the doubles
       throw InputError(message("uv: corner ", h % 3, " of face ", h / 3, " is at (", corners_[h].x(), ", ",
                                corners_[h].y(), "), wanted numbers up to 1e60"));
   for (Index f = 0; f < mesh_->face_count(); ++f) {
+    stage.check();
     const Sign sign = turn(corners_[3 * f], corners_[3 * f + 1], corners_[3 * f + 2]);
     if (sign != Sign::positive)
       throw InputError(message("uv: face ", f,

@@ -28,7 +28,7 @@ void check_values(std::span<const double> angles, std::span<const double> turns)
 }  // namespace
 
 DirectionField field_of_turns(const Mesh& mesh, int symmetry, std::span<const double> angles,
-                              std::span<const double> turns) {
+                              std::span<const double> turns, Job* job) {
   if (symmetry != 1 && symmetry != 2 && symmetry != 4)
     throw InputError(message("symmetry: wanted 1, 2 or 4, got ", symmetry));
   if (angles.size() != static_cast<std::size_t>(mesh.face_count()))
@@ -36,8 +36,10 @@ DirectionField field_of_turns(const Mesh& mesh, int symmetry, std::span<const do
   if (turns.size() != static_cast<std::size_t>(mesh.halfedge_count()))
     throw InputError(message("turns: wanted ", mesh.face_count(), " rows, got ", turns.size() / 3));
   check_values(angles, turns);
-  const SurfaceConnection connection = surface_connection(mesh);
+  const JobStage stage(job, "Reading directions");
+  const SurfaceConnection connection = surface_connection(mesh, stage.part(0, 0.5));
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    stage.check();
     const Index twin = mesh.twin(h), face = Mesh::face_of(h);
     if (!(std::abs(turns[h] + (twin == k_none ? 0 : turns[twin])) < k_opposite))
       throw InputError(message("turns: not opposite across edge ", h % 3, " of face ", face));
@@ -48,7 +50,8 @@ DirectionField field_of_turns(const Mesh& mesh, int symmetry, std::span<const do
       throw InputError(message("turns: across edge ", h % 3, " of face ", face, " the field turns to ", std::abs(miss),
                                " radians beside that of face ", Mesh::face_of(twin)));
   }
-  return DirectionField(mesh, symmetry, {angles.begin(), angles.end()}, {turns.begin(), turns.end()});
+  return DirectionField(mesh, symmetry, {angles.begin(), angles.end()}, {turns.begin(), turns.end()},
+                        stage.part(0.5, 1));
 }
 
 }  // namespace saddleback

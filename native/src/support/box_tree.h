@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -24,13 +25,14 @@ template <class Vector>
 class BoxTree {
  public:
   BoxTree() = default;
-  /// O(n log n).
-  explicit BoxTree(const std::vector<Box<Vector>>& boxes) : boxes_(boxes.size()), order_(boxes.size()) {
+  /// O(n log n). \throw Cancelled.
+  explicit BoxTree(const std::vector<Box<Vector>>& boxes, const JobStage& stage = {})
+      : boxes_(boxes.size()), order_(boxes.size()) {
     if (boxes.empty()) return;
     std::vector<Center> centers(boxes.size());
     for (Index i = 0; i < static_cast<Index>(boxes.size()); ++i) centers[i] = {boxes[i].low + boxes[i].high, i};
     nodes_.resize(4 * std::bit_ceil(boxes.size() / k_leaf + 1));
-    build(1, centers, boxes, 0);
+    build(1, centers, boxes, 0, stage);
   }
 
   /// Calls visit(i) for every box i that meets `box`, in no particular order. O(log n + boxes met), typically.
@@ -66,7 +68,8 @@ class BoxTree {
 
   /// `begin` is the first one's place.
   const Box<Vector>& build(std::size_t node, std::span<Center> centers, const std::vector<Box<Vector>>& boxes,
-                           Index begin) {
+                           Index begin, const JobStage& stage) {
+    stage.check();
     Box<Vector>& whole = nodes_[node];
     if (centers.size() <= k_leaf) {
       whole = boxes[centers.front().box];
@@ -84,8 +87,8 @@ class BoxTree {
     const std::size_t half = centers.size() / 2;
     std::ranges::nth_element(centers, centers.begin() + half, {},
                              [axis](const Center& center) { return std::pair(center.twice[axis], center.box); });
-    whole = build(2 * node, centers.first(half), boxes, begin);
-    join(whole, build(2 * node + 1, centers.subspan(half), boxes, begin + static_cast<Index>(half)));
+    whole = build(2 * node, centers.first(half), boxes, begin, stage);
+    join(whole, build(2 * node + 1, centers.subspan(half), boxes, begin + static_cast<Index>(half), stage));
     return whole;
   }
 

@@ -167,13 +167,15 @@ SurfacePoint first_place(const Mesh& mesh, const CellMass& cell, const SurfacePo
   return std::ranges::binary_search(cell.faces(), moved.face) ? moved : site;
 }
 
-SurfacePoint center_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, const SurfacePoint& site, double size) {
+SurfacePoint center_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, const SurfacePoint& site, double size,
+                       const JobStage& stage) {
   if (!(cell.mass() > 0)) return site;
   log.begin(cell.faces());
   const double reach = k_tolerance * size / 2;
   SurfacePoint place = at_vertex_within(mesh, first_place(mesh, cell, site, size), reach);
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < k_most_steps; ++i) {
+    stage.check();
     const bool is_near = before <= k_short_step * size;
     if (!(is_near && log.run_again(place)) && !log.run(place)) break;
     const Vec2 step = cell.mean(log);
@@ -209,7 +211,7 @@ SurfacePoints cell_centers(const Mesh& mesh, const GeodesicVoronoi& cells, std::
     stage.check();
     auto& [mass, log] = workers[thread];
     mass.begin(mesh, triangles, cell, weights.values());
-    centers[cell] = center_of(mesh, mass, log, cells.sites[cell], std::sqrt(cells.areas[cell]));
+    centers[cell] = center_of(mesh, mass, log, cells.sites[cell], std::sqrt(cells.areas[cell]), stage);
   });
   stage.update(1);
   return centers;

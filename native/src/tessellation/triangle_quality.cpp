@@ -78,13 +78,19 @@ void count_edges(std::span<const Triangle> triangles, TriangleQuality& out) {
 
 }  // namespace
 
-TriangleQuality triangle_quality(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+TriangleQuality triangle_quality(std::span<const Vec3> vertices, std::span<const Triangle> triangles, Job* job) {
+  const JobStage stage(job, "Measuring triangles");
   check(vertices, triangles);
   TriangleQuality result;
   result.valence.assign(vertices.size(), 0);
   result.at_boundary.assign(vertices.size(), 0);
-  for (const Triangle& t : triangles) measure({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, result);
+  for (const Triangle& t : triangles) {
+    stage.check();
+    measure({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, result);
+  }
+  stage.update(0.5);
   count_edges(triangles, result);
+  stage.update(1);
   std::size_t used = 0, irregular = 0;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     if (result.valence[v] == 0) continue;

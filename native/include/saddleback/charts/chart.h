@@ -44,7 +44,7 @@ class Chart {
 
  private:
   struct Finder;
-  void check_faces() const;
+  void check_faces(const JobStage& stage) const;
   void check_overlaps(const JobStage& stage) const;
 
   const Mesh* mesh_;

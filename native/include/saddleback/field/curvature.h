@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/mesh/mesh.h"
 
 namespace saddleback {
@@ -15,7 +16,7 @@ struct PrincipalCurvatures {
 };
 
 /// Computes them from the change of vertex normals over each face, averaged about vertices by area [rusinkiewicz2004].
-/// O(F).
-PrincipalCurvatures principal_curvatures(const Mesh& mesh);
+/// O(F). \throw Cancelled.
+PrincipalCurvatures principal_curvatures(const Mesh& mesh, Job* job = nullptr);
 
 }  // namespace saddleback

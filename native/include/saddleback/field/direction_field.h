@@ -145,15 +145,15 @@ class DirectionFieldEditor {
 /// The field that has these directions: (F,) vectors in space, of which the part within each face counts, and no more
 /// than their symmetry. From face to face it turns by less than half of 1 / symmetry, the nearer way.
 /// \throw InputError for another symmetry than 1, 2 and 4, another number of vectors, one that is not finite or has no
-/// part within its face. O(F).
-DirectionField field_of_vectors(const Mesh& mesh, int symmetry, std::span<const Vec3> vectors);
+/// part within its face; Cancelled. O(F).
+DirectionField field_of_vectors(const Mesh& mesh, int symmetry, std::span<const Vec3> vectors, Job* job = nullptr);
 
 /// The field that has these angles and turns, as `angles` and `turns` of another gave them. \throw InputError for
 /// arrays of another length, values beyond a thousand (turns) or a million (angles) radians, turns that are not
 /// opposite for the two faces of an edge, not 0 on the boundary or do not lead from one face's direction to one of the
-/// other's. O(F).
+/// other's; Cancelled. O(F).
 DirectionField field_of_turns(const Mesh& mesh, int symmetry, std::span<const double> angles,
-                              std::span<const double> turns);
+                              std::span<const double> turns, Job* job = nullptr);
 
 /// One field, as by an editor that is used once.
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options = {},

@@ -75,9 +75,11 @@ CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const 
 /// inwards, as in vector distance transforms, and each vertex tries those that follow its own along the boundary, too.
 /// So the distance is a straight one to a segment that was reached on the surface, and never jumps from one fold to
 /// another. Never too short; at most a few percent too long near the middle line of a cell with a ragged boundary,
-/// where the nearest segment may be nearest to no vertex on the way. \throw InputError for a wrong number of cells.
+/// where the nearest segment may be nearest to no vertex on the way. \throw InputError for a wrong number of cells,
+/// Cancelled.
 std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                           std::span<const Index> triangle_cell, double limit);
+                                           std::span<const Index> triangle_cell, double limit,
+                                           const JobStage& stage = {});
 
 struct BoundaryRefinement {
   std::vector<double> fields;       ///< (W, k) the given vertices, then the new ones
@@ -90,10 +92,11 @@ struct BoundaryRefinement {
 /// boundary it would be 0 all over. `fields` (V, k) holds all numbers of a vertex side by side, the position first; new
 /// vertices get the means of theirs. The last is filled with the distance. An edge is halved where the distance in its
 /// middle differs by more from the mean of both ends, and the level is crossed. \throw InputError for a wrong number of
-/// cells, and a tolerance that is not above 0. O(V + U) for a fixed number of rings.
+/// cells, and a tolerance that is not above 0; Cancelled. O(V + U) for a fixed number of rings.
 BoundaryRefinement refine_to_cell_boundary(std::span<const double> fields, Index width,
                                            std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
-                                           std::span<const double> levels, double tolerance);
+                                           std::span<const double> levels, double tolerance,
+                                           const JobStage& stage = {});
 
 /// Pairs of triangles that pass through each other, the smaller number first, in order: an edge of one goes from one
 /// side of the other to its other side. Exact for coordinates as they are; triangles that only touch, lie in one plane

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -18,7 +19,9 @@ struct TriangleQuality {
 };
 
 /// S is a triangle's area, p half its perimeter, h its longest edge [frey1999]. Any triangles will do, manifold or not.
-/// \throw InputError for an index out of range or a coordinate that is not finite, naming the first. O(V + T log T).
-TriangleQuality triangle_quality(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
+/// \throw InputError for an index out of range or a coordinate that is not finite, naming the first; Cancelled.
+/// O(V + T log T).
+TriangleQuality triangle_quality(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                                 Job* job = nullptr);
 
 }  // namespace saddleback

@@ -121,20 +121,25 @@ std::vector<FaceBending> bending_of_faces(const Mesh& mesh, const ShapeOperator&
   return result;
 }
 
-PrincipalCurvatures principal_curvatures(const Mesh& mesh) {
-  const ShapeOperator shape = shape_operator(mesh);
-  PrincipalCurvatures result;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+PrincipalCurvatures principal_curvatures(const Mesh& mesh, Job* job) {
+  const JobStage stage(job, "Measuring curvature");
+  const ShapeOperator shape = shape_operator(mesh, stage);
+  stage.update(0.8);
+  const std::size_t count = mesh.vertex_count();
+  PrincipalCurvatures result{std::vector<double>(count), std::vector<double>(count), std::vector<Vec3>(count)};
+  for_rows(0, mesh.vertex_count(), 0, [&](Index v) {
+    if (v % k_rows_a_block == 0) stage.check();
     const Vec3 x = shape.normals[v].unitOrthogonal();
     Eigen::Matrix<double, 3, 2> axes;
     axes << x, shape.normals[v].cross(x);
     const Eigen::Matrix2d flat = axes.transpose() * shape.operators[v] * axes;
     const double mean = 0.5 * flat.trace(), half = hypotenuse(0.5 * (flat(0, 0) - flat(1, 1)), flat(0, 1));
     const double angle = 0.5 * std::atan2(2 * flat(0, 1), flat(0, 0) - flat(1, 1));
-    result.smallest.push_back(mean - half);
-    result.largest.push_back(mean + half);
-    result.direction.push_back(axes * Vec2(std::cos(angle), std::sin(angle)));
-  }
+    result.smallest[v] = mean - half;
+    result.largest[v] = mean + half;
+    result.direction[v] = axes * Vec2(std::cos(angle), std::sin(angle));
+  });
+  stage.update(1);
   return result;
 }
 

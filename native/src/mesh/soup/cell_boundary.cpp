@@ -73,7 +73,7 @@ class BoundarySearch {
   }
 
   /// Ring after ring, from the vertices beside the boundary on.
-  void spread(double limit) {
+  void spread(double limit, const JobStage& stage) {
     std::vector<Index> ring, next;
     std::vector<std::uint8_t> waits(vertices_.size(), 0);
     const auto reach = [&](Index vertex) {
@@ -81,13 +81,16 @@ class BoundarySearch {
       if (!waits[vertex]) next.push_back(vertex);
       waits[vertex] = 1;
     };
-    for (Index v = 0; v < static_cast<Index>(vertices_.size()); ++v)
+    for (Index v = 0; v < static_cast<Index>(vertices_.size()); ++v) {
+      stage.check();
       if (offer_neighbors_segments(v)) reach(v);
+    }
     while (!next.empty()) {
       ring.swap(next);
       next.clear();
       for (const Index v : ring) waits[v] = 0;
       for (const Index v : ring) {
+        stage.check();
         if (squared_[v] < limit * limit)
           visit_neighbors(v, [&](Index w) {
             if (!touches(w) && nearest_[w] != nearest_[v] && offer(w, nearest_[v])) reach(w);
@@ -229,14 +232,16 @@ class BoundarySearch {
 class BoundaryRefiner {
  public:
   BoundaryRefiner(std::span<const double> fields, Index width, std::span<const Triangle> triangles,
-                  std::span<const Index> triangle_cell, std::span<const double> levels, double tolerance)
+                  std::span<const Index> triangle_cell, std::span<const double> levels, double tolerance,
+                  const JobStage& stage)
       : width_(width),
         levels_(levels),
         tolerance_(tolerance),
+        stage_(stage),
         given_(positions_of(fields, width)),
         places_(given_),
         search_(given_, triangles, triangle_cell) {
-    search_.spread(std::numeric_limits<double>::infinity());
+    search_.spread(std::numeric_limits<double>::infinity(), stage_);
     out_.fields.assign(fields.begin(), fields.end());
     out_.triangles.assign(triangles.begin(), triangles.end());
     out_.cells.assign(triangle_cell.begin(), triangle_cell.end());
@@ -249,7 +254,10 @@ class BoundaryRefiner {
     for (int round = 0; round < k_most_rounds && !active.empty(); ++round) {
       middles_.clear();
       next.clear();
-      for (const Index t : active) split(t, next);
+      for (const Index t : active) {
+        stage_.check();
+        split(t, next);
+      }
       spread(next);
       active.swap(next);
     }
@@ -381,6 +389,7 @@ class BoundaryRefiner {
   const Index width_;
   const std::span<const double> levels_;
   const double tolerance_;
+  const JobStage& stage_;
   const std::vector<Vec3> given_;
   std::vector<Vec3> places_;
   BoundarySearch search_;
@@ -397,22 +406,22 @@ CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const 
 }
 
 std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                           std::span<const Index> triangle_cell, double limit) {
+                                           std::span<const Index> triangle_cell, double limit, const JobStage& stage) {
   check_cells(triangles, triangle_cell);
   if (!(limit >= 0)) throw InputError(message("limit: wanted a length of 0 or more, got ", limit));
   BoundarySearch search(vertices, triangles, triangle_cell);
-  search.spread(limit);
+  search.spread(limit, stage);
   return search.distances();
 }
 
 BoundaryRefinement refine_to_cell_boundary(std::span<const double> fields, Index width,
                                            std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
-                                           std::span<const double> levels, double tolerance) {
+                                           std::span<const double> levels, double tolerance, const JobStage& stage) {
   if (width < 4) throw InputError(message("fields: wanted a position and room for a distance, got ", width));
   check_cells(triangles, triangle_cell);
   if (!(tolerance > 0)) throw InputError(message("tolerance: wanted a share above 0, got ", tolerance));
   check_corners(triangles, static_cast<Index>(fields.size() / width));
-  return BoundaryRefiner(fields, width, triangles, triangle_cell, levels, tolerance).run();
+  return BoundaryRefiner(fields, width, triangles, triangle_cell, levels, tolerance, stage).run();
 }
 
 }  // namespace saddleback

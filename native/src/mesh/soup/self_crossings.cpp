@@ -118,8 +118,11 @@ std::vector<Group> groups_of(std::vector<Index> chosen, std::optional<std::span<
   parallel_for(static_cast<Index>(groups.size()), threads, 1, [&](Index g, int) {
     stage.check();
     std::vector<Box<Vec3>> boxes;
-    for (const Index i : groups[g].triangles) boxes.push_back(crossings.box(i));
-    groups[g].tree = BoxTree<Vec3>(boxes);
+    for (const Index i : groups[g].triangles) {
+      stage.check();
+      boxes.push_back(crossings.box(i));
+    }
+    groups[g].tree = BoxTree<Vec3>(boxes, stage);
   });
   return groups;
 }
@@ -141,7 +144,7 @@ std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices,
   const std::vector<Group> groups = groups_of(chosen, owners, crossings, threads, stage);
   std::vector<Box<Vec3>> boxes;
   for (const Group& group : groups) boxes.push_back(group.tree.whole());
-  const BoxTree<Vec3> tree(boxes);
+  const BoxTree<Vec3> tree(boxes, stage);
 
   struct alignas(k_apart) Worker {
     std::vector<std::array<Index, 2>> found;
