@@ -158,6 +158,19 @@ def test_barriers_that_end_within_a_cell_are_sides_all_the_same(length: int, at_
     np.testing.assert_array_equal(polygons.polygon_cell, np.arange(count + len(added)))
 
 
+def test_thousands_of_loose_barriers_take_no_longer_than_their_cells() -> None:
+    """Each end looks at the smaller side of its cut alone."""
+    mesh = sb.Mesh(*meshes.icosphere(6))
+    barred = sb.add_barriers(mesh, edges=mesh.edges[::7])
+    begin = time.process_time()
+    graph = sb.SaddleVertexGraph(barred.mesh, threads=1)
+    cells = sb.geodesic_voronoi(graph, sb.sample(barred.mesh, 60, one_per_component=True), threads=1)
+    between = time.process_time()
+    polygons, _ = barred.polygons(cells)
+    assert len(polygons.polygon_cell) > 1000
+    assert time.process_time() - between < 3 * (between - begin)
+
+
 def test_without_barriers_the_polygons_are_those_of_the_cells() -> None:
     mesh = SOLIDS["torus"]
     barred = sb.add_barriers(mesh)

@@ -20,6 +20,7 @@ class EndCutter {
       : surface_(surface), triangles_(surface.split.triangles), twins_(twins_of(surface.split)) {
     const auto count = surface.split.vertices.size();
     around_.resize(count);
+    part_of_.resize(triangles_.size(), 0);
     for (Index h = 0; h < static_cast<Index>(twins_.size()); ++h) {
       around_[from(h)].push_back(h);
       if (twins_[h] == k_none) around_[to(h)].push_back(h);
@@ -89,35 +90,54 @@ class EndCutter {
     const std::vector<Index> way = way_from(end);
     if (way.empty()) return;  // no other line: the cell is all there is, and gets a polygon by no cut
     for (const Index h : way) surface_.lines[h] = surface_.lines[twins_[h]] = PartedSurface::drawn;
-    std::vector<Index> left = beside(way.front()), right = beside(twins_[way.front()]);
-    if (std::ranges::find(left, way.front() / 3) != left.end() &&
-        std::ranges::find(right, way.front() / 3) != right.end())
-      return;
-    const double of_left = area(left), of_right = area(right);
-    give(of_left < of_right ? left : right, std::min(of_left, of_right), std::max(of_left, of_right));
+    Part left(*this, way.front() / 3), right(*this, twins_[way.front()] / 3);
+    while (!left.is_whole() && !right.is_whole())
+      if (left.area <= right.area ? !left.grow(right) : !right.grow(left)) return;
+    // The other one need not be known as a whole once the first is little beside it.
+    Part &first = left.is_whole() ? left : right, &other = left.is_whole() ? right : left;
+    while (!other.is_whole() && !is_little(first.area, other.area))
+      if (!other.grow(first)) return;
+    const bool is_left_smaller = left.area < right.area;
+    give(is_left_smaller ? left.triangles : right.triangles, std::min(left.area, right.area),
+         std::max(left.area, right.area));
   }
 
-  /// The triangles that hang together with that of a half-edge.
-  std::vector<Index> beside(Index h) {
-    std::vector<Index> found{h / 3};
-    std::set<Index> seen{h / 3};
-    for (std::size_t i = 0; i < found.size(); ++i)
-      for (Index g = 3 * found[i]; g < 3 * found[i] + 3; ++g)
-        if (!is_line(g) && seen.insert(twins_[g] / 3).second) found.push_back(twins_[g] / 3);
-    return found;
+  static bool is_little(double size, double rest) { return size < k_little * (size + rest); }
+
+  double area(Index t) const {
+    const auto corner = [&](int i) { return surface_.split.vertices[triangles_[t][i]]; };
+    return (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
   }
 
-  double area(const std::vector<Index>& part) const {
-    double sum = 0;
-    for (const Index t : part) {
-      const auto corner = [&](int i) { return surface_.split.vertices[triangles_[t][i]]; };
-      sum += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+  /// The triangles that hang together with one, found one after the other.
+  struct Part {
+    Part(EndCutter& of, Index triangle) : cutter(of), number(++of.part_count_) { add(triangle); }
+    bool is_whole() const { return next == triangles.size(); }
+    void add(Index t) {
+      cutter.part_of_[t] = number;
+      triangles.push_back(t);
+      area += cutter.area(t);
     }
-    return sum;
-  }
+    /// Adds those beside one; false where one of them belongs to the other part.
+    bool grow(const Part& other) {
+      const Index t = triangles[next++];
+      for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+        if (cutter.is_line(h)) continue;
+        const Index beyond = cutter.twins_[h] / 3;
+        if (cutter.part_of_[beyond] == other.number) return false;
+        if (cutter.part_of_[beyond] != number) add(beyond);
+      }
+      return true;
+    }
+    EndCutter& cutter;
+    Index number;
+    std::vector<Index> triangles;
+    std::size_t next = 0;
+    double area = 0;
+  };
 
   void give(const std::vector<Index>& part, double size, double rest) {
-    Index owner = size < k_little * (size + rest) ? neighbor(part) : k_none;
+    Index owner = is_little(size, rest) ? neighbor(part) : k_none;
     if (owner == k_none) {
       owner = static_cast<Index>(surface_.areas.size());
       surface_.areas.push_back(0);
@@ -156,6 +176,8 @@ class EndCutter {
   const std::vector<Triangle>& triangles_;
   const std::vector<Index> twins_;
   std::vector<std::vector<Index>> around_;  ///< of each vertex: a half-edge for each edge there
+  std::vector<Index> part_of_;              ///< of each triangle: the number of the part that found it last
+  Index part_count_ = 0;
 };
 
 }  // namespace
