@@ -56,7 +56,8 @@ constexpr const char* k_field_doc =
     R"(Exact distances at every point of the surface, not at the vertices alone, and the shortest paths.
 
 Takes what exact_distances takes and raises what it raises. Keeps the windows of the propagation: about 40 bytes each,
-20 to 150 of them a vertex (nbytes tells). Immutable.)";
+20 to 150 of them a vertex of a scan, but as the root of the vertices on flat and smooth surfaces, a thousand each of a
+million (nbytes tells). Raises InputError where memory is too small for them. Immutable.)";
 
 constexpr const char* k_distance_to_doc = R"(Distance of any surface points from the nearest source.
 

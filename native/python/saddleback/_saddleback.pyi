@@ -874,7 +874,8 @@ class ExactField:
     """Exact distances at every point of the surface, not at the vertices alone, and the shortest paths.
 
     Takes what exact_distances takes and raises what it raises. Keeps the windows of the propagation: about 40 bytes each,
-    20 to 150 of them a vertex (nbytes tells). Immutable.
+    20 to 150 of them a vertex of a scan, but as the root of the vertices on flat and smooth surfaces, a thousand each of a
+    million (nbytes tells). Raises InputError where memory is too small for them. Immutable.
     """
     def __init__(self, mesh: Mesh, sources: _Points, *, job: Job | None = None) -> None: ...
     @property

@@ -30,10 +30,11 @@ NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources,
 class WaysToFace;
 
 /// The exact distance of every point of the surface, not of the vertices alone, and the shortest paths. Keeps the
-/// windows, some 40 bytes each and 20 to 150 of them a vertex. Immutable: any number of threads may ask it.
+/// windows, some 40 bytes each and 20 to 150 of them a vertex of a scan, a thousand where a million vertices are flat
+/// or round. Immutable: any number of threads may ask it.
 class ExactField {
  public:
-  /// The mesh must outlive the field. Errors as exact_distances.
+  /// The mesh must outlive the field. Errors as exact_distances; InputError where memory is too small for the windows.
   ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job = nullptr);
   /// Does the same as a part of other work.
   ExactField(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage);
