@@ -69,7 +69,7 @@ def _content(value: Any) -> tuple[Any, ...]:
         return value.mesh, value.k, value.accuracy, value.is_exact, value.arc_count
     if isinstance(value, Mesh | Shape):
         parts: tuple[Any, ...] = value.__reduce__()[1]  # type: ignore[assignment]
-        return parts
+        return (*parts, value.edge_lengths) if isinstance(value, Mesh) and value.is_intrinsic else parts
     state: tuple[Any, ...] = value._state()
     return state[: len(state) - value._notes]
 

@@ -199,6 +199,10 @@ def test_others_are_other() -> None:
     assert sb.geodesic_voronoi(graph, [0, 9]) != sb.geodesic_voronoi(graph, [0, 10])
     assert sb.Shape.star(5) != sb.Shape.star(6)
     assert len({mesh, sb.Mesh(vertices, triangles), moved}) == 2
+    longer, longest = (sb.Mesh(vertices, triangles, lengths=share * mesh.edge_lengths) for share in (2, 3))
+    assert longer == pickle.loads(pickle.dumps(longer))
+    assert len({mesh, longer, longest}) == len({each.__dask_tokenize__() for each in (mesh, longer, longest)}) == 3
+    assert longer != longest and longer != mesh
 
 
 def test_a_pickled_graph_is_its_file(tmp_path: Path) -> None:
