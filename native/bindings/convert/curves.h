@@ -8,7 +8,13 @@
 
 namespace saddleback::bindings {
 
-/// The curves of an argument `curves`, which keeps them; none for None. \throw InputError for anything else.
-std::vector<const SurfaceCurve*> as_curves(const py::object& curves);
+/// Curves of an argument, and the Python objects that hold them: an iterator makes them on the way, and a list may
+/// change meanwhile.
+struct CurvesIn {
+  py::tuple kept;
+  std::vector<const SurfaceCurve*> curves;
+};
+/// The curves of an argument `curves`; none for None. \throw InputError for anything else.
+CurvesIn as_curves(const py::object& curves);
 
 }  // namespace saddleback::bindings

@@ -61,13 +61,17 @@ const SaddleVertexGraph& as_graph(const py::object& value) {
   return py::cast<const SaddleVertexGraph&>(value);
 }
 
-std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
-  std::vector<const SurfaceCurve*> result;
+CurvesIn as_curves(const py::object& curves) {
+  CurvesIn result;
   if (curves.is_none()) return result;
-  for (const py::handle& curve : curves) {
-    if (!py::isinstance<SurfaceCurve>(curve))
-      throw InputError(message("curves: wanted SurfaceCurves, got a ", Py_TYPE(curve.ptr())->tp_name));
-    result.push_back(&py::cast<const SurfaceCurve&>(curve));
+  const auto refuse = [](const py::handle& got) {
+    throw InputError(message("curves: wanted SurfaceCurves, got a ", Py_TYPE(got.ptr())->tp_name));
+  };
+  if (!py::isinstance<py::iterable>(curves)) refuse(curves);
+  result.kept = py::tuple(curves);
+  for (const py::handle curve : result.kept) {
+    if (!py::isinstance<SurfaceCurve>(curve)) refuse(curve);
+    result.curves.push_back(&py::cast<const SurfaceCurve&>(curve));
   }
   return result;
 }

@@ -42,10 +42,11 @@ Barred with_barriers(const py::object& mesh_object, const py::object& edges, con
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const JobIn watched(job);
   const ArrayIn<Index> ends = edges.is_none() ? ArrayIn<Index>{} : as_edges(edges, "edges");
-  const std::vector<const SurfaceCurve*> lines = as_curves(curves);
+  const CurvesIn lines = as_curves(curves);
   const std::vector<std::uint8_t> left_out = as_faces(faces, mesh);
-  const Barriers barriers{
-      {reinterpret_cast<const std::array<Index, 2>*>(ends.values.data()), ends.values.size() / 2}, lines, left_out};
+  const Barriers barriers{{reinterpret_cast<const std::array<Index, 2>*>(ends.values.data()), ends.values.size() / 2},
+                          lines.curves,
+                          left_out};
   BarredMesh made = without_gil([&] { return add_barriers(mesh, barriers, watched); });
   return {std::move(made), mesh_object};
 }

@@ -151,7 +151,8 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   options.counts = as_counts(counts);
   if (!shares.is_none()) options.shares = as_sizes(shares, "shares");
   if (!shares.is_none() && options.shares.empty()) throw InputError("shares has 0 values, wanted one a shape");
-  options.fields = as_fields(field);
+  const py::object fields = kept_fields(field);
+  options.fields = as_fields(fields);
   const std::size_t shape_count = made->shapes.size();
   if (!density.is_none()) options.density = as_lists(density, "density", shape_count, mesh.vertex_count());
   options.size = as_lists(size, "size", shape_count, mesh.vertex_count());
@@ -166,7 +167,7 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   if (!forbidden.is_none()) options.forbidden = as_flags(forbidden, "forbidden");
   options.mirror = mirror;
   options.bend = bend;
-  made->field = bend ? kept_fields(field) : py::none();
+  made->field = bend ? fields : py::none();
   options.tolerance = as_real(tolerance, "tolerance");
   options.threads = as_integer(threads, "threads");
   const JobIn token(job);

@@ -80,8 +80,8 @@ py::object cells_of(const Dual& dual) {
 }
 
 py::tuple quads(const Dual& dual, const py::object& curves) {
-  const std::vector<const SurfaceCurve*> lines = as_curves(curves);
-  DualQuads made = without_gil([&] { return dual_quads(*dual.mesh, *dual.cells, lines); });
+  const CurvesIn lines = as_curves(curves);
+  DualQuads made = without_gil([&] { return dual_quads(*dual.mesh, *dual.cells, lines.curves); });
   return py::make_tuple(std::move(made.points), to_rows<Index>(std::move(made.quads)));
 }
 

@@ -88,12 +88,12 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
   ArrayIn<Index> stay, on_curves;
   if (!fixed.is_none()) stay = as_indices(fixed, "fixed");
   if (!held.is_none()) on_curves = as_indices(held, "held");
-  const std::vector<const SurfaceCurve*> lines = as_curves(curves);
+  const CurvesIn lines = as_curves(curves);
   CentroidalVoronoiOptions options{
       .density = weights.values,
       .method = as_method(method),
       .start = {.starts = as_integer(starts, "starts"), .annealing = as_integer(annealing, "annealing")},
-      .constraints = {.fixed = stay.values, .curves = lines, .held = on_curves.values},
+      .constraints = {.fixed = stay.values, .curves = lines.curves, .held = on_curves.values},
       .stop = {.max_iterations = as_integer(max_iterations, "max_iterations"),
                .tolerance = as_real(tolerance, "tolerance"),
                .least_move = as_real(least_move, "least_move"),

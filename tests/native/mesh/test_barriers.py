@@ -54,6 +54,15 @@ def test_a_single_edge_is_a_barrier() -> None:
     assert [len(loop) for loop in barred.mesh.boundary_loops] == [32, 4]
 
 
+def test_curves_may_be_made_on_the_way() -> None:
+    """Those of a generator, which nobody else keeps."""
+    ends = [((0.1, y), (0.9, y)) for y in (0.2, 0.4, 0.6, 0.8)]
+    barred = sb.add_barriers(MESH, curves=(line(*pair) for pair in ends))
+    assert barred == sb.add_barriers(MESH, curves=[line(*pair) for pair in ends])
+    with pytest.raises(sb.InputError, match=r"curves: wanted SurfaceCurves, got a .*\.SurfaceCurve"):
+        sb.add_barriers(MESH, curves=line(*ends[0]))
+
+
 def test_what_is_enclosed_is_not_reached() -> None:
     barred = sb.add_barriers(MESH, edges=np.column_stack([ROW[:-1], ROW[1:]]))
     assert barred.mesh.component_count == 2
