@@ -87,8 +87,12 @@ Checked check_result(const py::object& mesh, const py::object& result, const py:
     throw InputError(message("result: wanted a MappedShapes or a distribution, got a ",
                              py::cast<std::string>(py::type::of(result).attr("__name__"))));
   const py::object field = py::hasattr(result, "field") ? py::object(result.attr("field")) : py::none();
-  const std::unique_ptr<MappedShapes> mapped = make_mapped(mesh, result.attr("shapes"), result.attr("placements"),
-                                                           field, py::make_tuple(0.5, 2.0), threads, py::none());
+  const Job& whole = *options.job;
+  const std::unique_ptr<MappedShapes> mapped =
+      make_mapped(mesh, result.attr("shapes"), result.attr("placements"), field, py::make_tuple(0.5, 2.0), threads,
+                  py::cast(whole.part(0, 0.5)));
+  Job checking = whole.part(0.5, 1);
+  options.job = &checking;
   return check_mapped(mesh, *mapped, options);
 }
 

@@ -31,6 +31,13 @@ Diagram load_diagram(const py::tuple& state) {
   return diagram;
 }
 
+/// The shares of a call that finds a diagram and, in a domain, its cells.
+struct Shares {
+  Job finding, clipping;
+  Shares(const Job& whole, bool has_domain)
+      : finding(whole.part(0, has_domain ? 0.7 : 1)), clipping(whole.part(0.7, 1)) {}
+};
+
 Voronoi2d find(const ArrayIn<double>& sites, const std::vector<double>& radii, const Voronoi2dOptions& options,
                Job* job) {
   static_assert(sizeof(Vec2) == 2 * sizeof(double));
@@ -54,13 +61,14 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
   const JobIn token(job);
+  Shares shares(*static_cast<Job*>(token), within.has_value());
   constexpr Index k_worth_a_device = 50'000;
   Voronoi2d diagram = run_on(device, points.count >= k_worth_a_device, [&](const std::vector<int>& devices) {
     options.cuda_devices = devices;
-    return find(points, radii, options, token);
+    return find(points, radii, options, &shares.finding);
   });
   if (!within) return {std::move(diagram), py::none()};
-  ClippedCells clipped = without_gil([&] { return diagram.clip(*within, options.threads, token); });
+  ClippedCells clipped = without_gil([&] { return diagram.clip(*within, options.threads, &shares.clipping); });
   return {std::move(diagram), py::cast(std::move(clipped))};
 }
 
@@ -72,9 +80,10 @@ Diagram find_powers(const py::object& sites, const py::object& weights, const py
   if (!domain.is_none()) within = as_domain(domain, "domain");
   const int count = as_integer(threads, "threads");
   const JobIn token(job);
-  Voronoi2d diagram = without_gil([&] { return power_diagram_2d(points, given.values, count, token); });
+  Shares shares(*static_cast<Job*>(token), within.has_value());
+  Voronoi2d diagram = without_gil([&] { return power_diagram_2d(points, given.values, count, &shares.finding); });
   if (!within) return {std::move(diagram), py::none()};
-  ClippedCells clipped = without_gil([&] { return diagram.clip(*within, count, token); });
+  ClippedCells clipped = without_gil([&] { return diagram.clip(*within, count, &shares.clipping); });
   return {std::move(diagram), py::cast(std::move(clipped))};
 }
 

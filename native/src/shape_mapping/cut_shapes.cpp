@@ -45,6 +45,7 @@ class Cutter {
       if (f % k_faces_between_looks == 0) stage_.update(static_cast<double>(f) / mesh_.face_count());
       next = cut_face(f, next);
     }
+    stage_.update(1);
     return std::move(result_);
   }
 
@@ -64,6 +65,7 @@ class Cutter {
       for (const Index vertex : used_) vertex_ids_[vertex] = k_none;
       used_.clear();
     }
+    stage_.update(1);
     return std::move(result_);
   }
 

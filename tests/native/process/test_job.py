@@ -126,6 +126,9 @@ def test_every_fraction_ends_at_one() -> None:
         "sample": lambda job: sb.sample(mesh, 1, job=job),
         "spread_values": lambda job: sb.spread_values(sb.Mesh(*meshes.two_components()), [0, 1], [1.0, 2.0], job=job),
         "project": lambda job: sb.project(mesh, np.zeros((0, 3)), job=job),
+        "cut": lambda job: sb.map_shapes(
+            mesh, sb.Shape.disk(), sb.Placements([0], sb.sample(mesh, 1), [0.0], [0.1])
+        ).cut(job=job),
         "direction_field": lambda job: sb.direction_field(sb.Mesh(*meshes.grid(5, 5)), 1, {}, job=job),
         "centroidal_voronoi": lambda job: sb.centroidal_voronoi(
             graph, count=9, max_iterations=5, closed_ball=True, return_when_cancelled=True, job=job

@@ -46,6 +46,8 @@ def calls() -> dict[str, Call]:
     line = graph.path(0, 1000)
     curve = sb.SurfaceCurve(mesh, sb.trace(mesh, 0, 0.3, 10.0).surface)
     balls = sb.Mesh(*meshes.merge(*(meshes.icosphere(5) for _ in range(4))))
+    places, square = np.random.default_rng(1).random((400_000, 2)), [(0, 0), (1, 0), (1, 1), (0, 1)]
+    none = np.zeros(100_000)
     return {
         "exact_distances": lambda job: sb.exact_distances(mesh, [0], job=job),
         "exact_distances_squeezed": lambda job: sb.exact_distances(squeezed, [0], job=job),
@@ -70,6 +72,8 @@ def calls() -> dict[str, Call]:
         "log_map": lambda job: graph.log_map(0, 1.0, job=job),
         "polar_coordinates": lambda job: sb.polar_coordinates(graph, line, 0.5, job=job),
         "distances_from_curve": lambda job: graph.distances(curve, job=job),
+        "diagram_in_a_domain": lambda job: sb.voronoi_2d(places, domain=square, device="cpu", job=job),
+        "powers_in_a_domain": lambda job: sb.power_diagram_2d(places[: len(none)], none, square, job=job),
     }
 
 
@@ -121,6 +125,8 @@ def watch(call: Call) -> tuple[list[float], float]:
         "log_map",
         "polar_coordinates",
         "distances_from_curve",
+        "diagram_in_a_domain",
+        "powers_in_a_domain",
     ],
 )
 def test_progress_rises_stands_nowhere_still_and_ends(long_calls: dict[str, Call], name: str) -> None:

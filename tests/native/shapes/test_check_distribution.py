@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from pathlib import Path
 
@@ -260,6 +261,18 @@ def test_a_distribution_is_anything_with_placements_and_shapes() -> None:
     assert not report.ok
     with pytest.raises(sb.InputError, match="wanted a MappedShapes or a distribution"):
         sb.check_distribution(mesh, center)
+
+
+def test_shapes_that_are_laid_first_are_watched() -> None:
+    """A distribution's are laid before they are checked, which may take longer than the check."""
+    mesh = sb.Mesh(*meshes.icosphere(5))
+    laid = sb.distribute(mesh, sb.Shape.disk(2000), 400, size=0.05)
+    job, texts = sb.Job(), set()
+    worker = threading.Thread(target=lambda: sb.check_distribution(mesh, laid, samples=0, job=job))
+    worker.start()
+    while worker.is_alive():
+        texts.add(job.text.rstrip("."))
+    assert len(texts - {""}) == 2 and job.fraction == 1
 
 
 def test_the_same_for_any_number_of_threads() -> None:
