@@ -366,6 +366,22 @@ def test_filling_makes_no_edge_that_is_there_already():
     assert (lone.face_count, report.changes) == (1, {})
 
 
+def test_time_of_many_holes_grows_with_the_mesh():
+    """Not with the holes times its faces: 20 times as long for 10 times as many at the most."""
+
+    def seconds(rows):
+        vertices, triangles = meshes.grid(41, rows)
+        kept = np.ones(len(triangles), bool)
+        kept.reshape(rows - 1, 40, 2)[1:-1:2, 1:-1:2] = False
+        start = process_time()
+        _, report = sb.repair(vertices, triangles[kept], fill_holes=8)
+        assert report.changes["holes_filled"] == 19 * ((rows - 2) // 2)
+        assert report.changes["holes_left"] == 1
+        return process_time() - start
+
+    assert seconds(2001) < 20 * seconds(201)
+
+
 @pytest.mark.parametrize("edges", [-1, 2001, 2**31 - 1])
 def test_holes_too_large_to_fill_are_refused(edges):
     with pytest.raises(sb.InputError, match="fill_holes: wanted 0 to 2000 edges"):

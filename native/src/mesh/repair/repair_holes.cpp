@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "mesh/repair/repair_borders.h"
 #include "mesh/tables/edge_table.h"
@@ -14,29 +16,50 @@ namespace {
 
 constexpr double k_never = std::numeric_limits<double>::infinity();
 
-using EdgeSet = std::vector<std::pair<Index, Index>>;
+/// The edges of the mesh and those that filling adds, each by its vertices.
+class EdgeSet {
+ public:
+  EdgeSet(std::span<const Triangle> triangles, const EdgeTable& table) {
+    for (Index e = 0; e < table.edge_count(); ++e)
+      given_.push_back(key(halfedge_from(triangles, table.edge(e)[0]), halfedge_to(triangles, table.edge(e)[0])));
+    std::sort(given_.begin(), given_.end());
+  }
 
-bool contains(const EdgeSet& edges, Index a, Index b) {
-  return std::binary_search(edges.begin(), edges.end(), std::pair(std::min(a, b), std::max(a, b)));
-}
+  bool contains(Index a, Index b) const {
+    return added_.contains(key(a, b)) || std::binary_search(given_.begin(), given_.end(), key(a, b));
+  }
+  void add(Index a, Index b) { added_.insert(key(a, b)); }
 
-/// Border loops as new faces go round them, against the direction of the faces that are there.
-std::vector<std::vector<Index>> border_loops(std::span<const Triangle> triangles, const EdgeTable& edges) {
+ private:
+  static std::uint64_t key(Index a, Index b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
+  }
+  std::vector<std::uint64_t> given_;
+  std::unordered_set<std::uint64_t> added_;
+};
+
+/// A border loop as new faces go round it, against the direction of the faces that are there.
+struct BorderLoop {
+  std::vector<Index> vertices;
+  Index face = k_none;  ///< one of those along it
+};
+
+std::vector<BorderLoop> border_loops(std::span<const Triangle> triangles, const EdgeTable& edges) {
   std::unordered_map<Index, Index> before;  // \pre manifold: one border half-edge ends at a border vertex
   for (Index e = 0; e < edges.edge_count(); ++e)
-    if (const auto around = edges.edge(e); around.size() == 1)
-      before[halfedge_to(triangles, around[0])] = halfedge_from(triangles, around[0]);
-  std::vector<std::vector<Index>> loops;
+    if (const auto around = edges.edge(e); around.size() == 1) before[halfedge_to(triangles, around[0])] = around[0];
+  std::vector<BorderLoop> loops;
   std::vector<Index> starts;
-  for (const auto& [vertex, previous] : before) starts.push_back(vertex);
+  for (const auto& [vertex, halfedge] : before) starts.push_back(vertex);
   std::sort(starts.begin(), starts.end());
   for (const Index start : starts) {
-    std::vector<Index> loop;
-    for (auto at = before.find(start); at != before.end(); at = before.find(loop.back())) {
-      loop.push_back(at->second);
+    BorderLoop loop;
+    for (auto at = before.find(start); at != before.end(); at = before.find(loop.vertices.back())) {
+      loop.vertices.push_back(halfedge_from(triangles, at->second));
+      loop.face = at->second / 3;
       before.erase(at);
     }
-    if (loop.size() >= 3) loops.push_back(std::move(loop));
+    if (loop.vertices.size() >= 3) loops.push_back(std::move(loop));
   }
   return loops;
 }
@@ -65,7 +88,7 @@ class LeastArea {
 
   void choose_apex(Index i, Index j) {
     double& best = area_[place(i, j)] = k_never;
-    if (j - i < count_ - 1 && contains(edges_, loop_[i], loop_[j])) return;
+    if (j - i < count_ - 1 && edges_.contains(loop_[i], loop_[j])) return;
     const Vec3 side = at(j) - at(i);
     for (Index k = i + 1; k < j; ++k) {
       const double area = area_[place(i, k)] + area_[place(k, j)] + side.cross(at(k) - at(i)).norm();
@@ -101,26 +124,19 @@ void fill_holes(RepairState& state, Index most_edges, const JobStage& stage) {
   std::vector<Triangle> triangles;
   for (const Index f : state.live_faces()) triangles.push_back(state.triangles[f]);
   const EdgeTable table = build_edge_table(triangles, state.vertex_count());
-  EdgeSet edges;
-  for (Index e = 0; e < table.edge_count(); ++e)
-    edges.push_back(
-        std::minmax({halfedge_from(triangles, table.edge(e)[0]), halfedge_to(triangles, table.edge(e)[0])}));
-  std::sort(edges.begin(), edges.end());
-  for (const std::vector<Index>& loop : border_loops(triangles, table)) {
+  EdgeSet edges(triangles, table);
+  for (const auto& [loop, along] : border_loops(triangles, table)) {
     // A loop of three about a single face would only give it a back.
     const bool is_lone_face =
-        loop.size() == 3 && std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
-          return std::is_permutation(t.begin(), t.end(), loop.begin());
-        });
+        loop.size() == 3 && std::is_permutation(loop.begin(), loop.end(), triangles[along].begin());
     std::vector<Triangle> faces;
     if (static_cast<Index>(loop.size()) <= most_edges && !is_lone_face)
       faces = LeastArea(state.positions, edges, loop).faces(stage);
     state.count(faces.empty() ? "holes_left" : "holes_filled");
     for (const Triangle& face : faces) {
       state.add_face(face);
-      for (int i = 0; i < 3; ++i) edges.push_back(std::minmax({face[i], face[(i + 1) % 3]}));
+      for (int i = 0; i < 3; ++i) edges.add(face[i], face[(i + 1) % 3]);
     }
-    if (!faces.empty()) std::sort(edges.begin(), edges.end());
   }
 }
 
