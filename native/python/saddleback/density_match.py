@@ -79,9 +79,11 @@ def density_match(mesh: Mesh, placements: Placements, density: ArrayLike, cells:
     shares = np.bincount(labels, areas * painted[mesh.triangles].mean(axis=1), minlength=cells)
     found = np.bincount(labels[placements.center.faces], minlength=cells).astype(np.int64)
     wanted = np.asarray(shares * (len(placements) / shares.sum()), dtype=np.float64)
-    # Faces cannot be divided: what is left of the difference between the cells' areas must not count.
+    # Faces cannot be divided: what is left of the difference between the cells' areas must not count, nor cells that
+    # large faces have left without any.
     sizes = np.bincount(labels, areas, minlength=cells)
-    thin, dense = wanted / sizes, found / sizes
+    there = sizes > 0
+    thin, dense = wanted[there] / sizes[there], found[there] / sizes[there]
     spread = thin.std() * dense.std()
     product = float(((thin - thin.mean()) * (dense - dense.mean())).mean())
     is_even = thin.std() <= 1e-9 * thin.mean() or dense.std() == 0

@@ -134,6 +134,11 @@ def test_distance_by_graph_file_and_exactly(capsys) -> None:
     assert None in json.loads(Path("d.json").read_text())["distance"]  # the other part is out of reach
 
 
+def test_a_limit_below_which_there_is_no_vertex(capsys) -> None:
+    told = summary(capsys, "distance", "good.ply", "--from-place", "0.501,0.502,0", "--limit", "1e-9")
+    assert (told["reached"], told["farthest"], told["farthest_vertex"], told["mean"]) == (0, None, None, None)
+
+
 def test_graphs_in_parts_are_the_same_file(capsys) -> None:
     summary(capsys, "graph good.ply --k 30 -o whole.graph")
     for part in (1, 2, 3):
@@ -246,6 +251,12 @@ def test_frames(capsys, tmp_path: Path) -> None:
     assert code == 1
     assert is_one_sentence(err)
     assert "frame.0011.ply" in err
+
+
+def test_frames_in_a_folder_whose_name_has_brackets(capsys) -> None:
+    Path("take[2]").mkdir()
+    Path("take[2]/frame.0007.ply").write_bytes(Path("good.ply").read_bytes())
+    assert summary(capsys, "distance", "take[2]/frame.####.ply", "--from", "0")["frame"] == 7
 
 
 @pytest.mark.parametrize(

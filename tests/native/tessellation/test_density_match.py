@@ -37,6 +37,17 @@ def test_copies_that_follow_a_ramp_and_copies_that_do_not() -> None:
     assert np.isnan(sb.density_match(mesh, even, np.ones(len(ramp))).correlation)
 
 
+def test_parts_that_large_faces_leave_without_any_do_not_count() -> None:
+    """Beside a face that has nearly all of the area there are no faces for its share of the parts."""
+    count = 12
+    vertices = [(0, 0, 0), (0, 1, 0), *((100 + 0.01 * i, i % 2, 0) for i in range(count))]
+    strip = [(i, i + 1, i + 2) if i % 2 == 0 else (i + 1, i, i + 2) for i in range(count)]
+    mesh = sb.Mesh(vertices, strip)
+    ramp = 1 + mesh.vertices[:, 0]
+    match = sb.density_match(mesh, copies(sb.sample(mesh, 2000, ramp)), ramp, 6)
+    assert match.correlation > 0.99 and match.found.sum() == 2000
+
+
 def test_bad_input() -> None:
     mesh = sb.Mesh(*meshes.grid())
     one = copies(sb.SurfacePoints([3], [[1, 0, 0]]))

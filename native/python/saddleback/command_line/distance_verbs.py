@@ -93,12 +93,13 @@ def distance(run: Run, limit: float | None, exact: bool) -> Summary:
         found = run.graph.distances(sources, far, job=run.job)
     _save_field(run.out["output"], run.mesh, found)
     reached = found[np.isfinite(found)]
+    is_any = len(reached) > 0  # within a limit there may be no vertex
     return {
         "reached": len(reached),
         "vertices": len(found),
-        "farthest": float(reached.max()),
-        "farthest_vertex": int(np.argmax(np.where(np.isfinite(found), found, -1))),
-        "mean": float(reached.mean()),
+        "farthest": float(reached.max()) if is_any else None,
+        "farthest_vertex": int(np.argmax(np.where(np.isfinite(found), found, -1))) if is_any else None,
+        "mean": float(reached.mean()) if is_any else None,
     }
 
 

@@ -47,7 +47,8 @@ def frames_of(pattern: str, wanted: str | None) -> list[int | None]:
         raise click.UsageError(f"{pattern}: wanted one run of hashes")
     if wanted is None:
         before, after = _HASHES.split(pattern)
-        numbers = [name[len(before) : len(name) - len(after)] for name in glob.glob(_HASHES.sub("*", pattern))]
+        names = glob.glob(f"{glob.escape(before)}*{glob.escape(after)}")
+        numbers = [name[len(before) : len(name) - len(after)] for name in names]
         found = sorted(int(number) for number in numbers if number.isdigit())
         if not found:
             raise Failure(f"{pattern}: there is no such frame")
