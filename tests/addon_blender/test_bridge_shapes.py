@@ -81,6 +81,36 @@ def test_solids_have_their_silhouette_as_outline(shapes):
     assert len(flat.solid.vertices) == 8 and flat.solid.uv.shape == (24, 2)
 
 
+def volume(solid):
+    corners = solid.vertices[solid.corners[solid.parted()]]
+    return np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+
+
+@pytest.mark.parametrize(("scale", "parent"), [((-1, 2, 3), 1), ((1, -2, 3), 1), ((1, 2, 3), -1), ((-1, -2, 3), -1)])
+def test_mirrored_objects_stand_upright(shapes, scale, parent):
+    """Along X or Y, as by Ctrl M, by their own scale or a parent's: no roof becomes a cellar."""
+    roof = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0.5, 0.25, 1)], float)
+    faces = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (3, 2, 1, 0)]
+    item = move(add_object("Roof", roof, faces), shapes)
+    item.data.uv_layers.new()
+    places = np.random.default_rng(1).random(2 * len(item.data.loops)).astype(np.float32)
+    item.data.uv_layers.active.data.foreach_set("uv", places)
+    item.scale = scale
+    item.parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(item.parent)
+    item.parent.scale = (1, parent, 1)
+    bpy.context.view_layer.update()
+    (template,) = read()
+    mirrored = (-1, 2, 3) if parent < 0 else scale
+    assert template.own_scale == pytest.approx(mirrored)
+    tip = template.solid.vertices[4] / template.scale - template.shift
+    np.testing.assert_allclose(tip, roof[4] * mirrored, atol=1e-6)
+    assert volume(template.solid) == pytest.approx(2 * 4 * 3 / 3 * template.scale**3)
+    corners = [(v, *uv) for v, uv in zip(template.solid.corners.tolist(), template.solid.uv.tolist(), strict=True)]
+    before = [loop.vertex_index for loop in item.data.loops]
+    assert set(corners) == {(v, *map(float, uv)) for v, uv in zip(before, places.reshape(-1, 2), strict=True)}
+
+
 def test_modifiers_of_shapes_count(shapes):
     item = move(add_object("Square", *grid_arrays(2)), shapes)
     item.modifiers.new("Array", "ARRAY").count = 2

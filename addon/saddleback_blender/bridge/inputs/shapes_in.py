@@ -45,7 +45,7 @@ def read_templates(
     items = items_of(source, settings.shapes_collection)
     found = [(_template(context, source, item), item) for item in items]
     with evaluated(context, items) as shown:
-        scales = [(x, y, z) for x, y, z in (item.matrix_world.to_scale() for item in shown)]
+        scales = [(float(x), float(y), float(z)) for x, y, z in map(_own_scale, shown)]
     largest = max(1.0 / template.scale for template, _ in found)
     return tuple(
         replace(
@@ -81,6 +81,17 @@ def _may_be_shape(item: bpy.types.Object) -> bool:
 def _is_instance(item: bpy.types.Object) -> bool:
     """Tells whether an empty shows a collection."""
     return item.type == "EMPTY" and item.instance_type == "COLLECTION" and item.instance_collection is not None
+
+
+def _own_scale(item: bpy.types.Object) -> Reals:
+    """An object's scale in the world. A mirrored one is so along the axes of its own scale or, without such, along X:
+    Blender's `to_scale` mirrors all three and turns the object to match, and how a shape is turned does not count.
+    """
+    scale: Reals = np.abs(item.matrix_world.to_scale()[:])
+    if item.matrix_world.determinant() < 0:
+        signs = np.sign(item.scale[:])
+        scale *= signs if signs.prod() < 0 else (-1.0, 1.0, 1.0)
+    return scale
 
 
 def _share(source: bpy.types.Object, item: bpy.types.Object) -> float:
@@ -130,11 +141,12 @@ def read_solid(
 ) -> Solid:
     """The faces of an object of whatever kind, in its own space and scale. Raises BadInputError without any."""
     with modified(context, item) as (shown, mesh):
-        vertices = compat.read_positions(mesh).astype(np.float64) * np.array(shown.matrix_world.to_scale()[:])
+        scale = _own_scale(shown)
+        vertices = compat.read_positions(mesh).astype(np.float64) * scale
         triangles = read_triangles(mesh)
         if not len(triangles) or not np.isfinite(vertices).all():
             raise BadInputError(f"'{source.name}': {what} '{item.name}' has no faces; give it some, or take it away")
-        return _solid(mesh, vertices)
+        return _solid(mesh, vertices, scale.prod() < 0)
 
 
 def _of_instance(
@@ -145,7 +157,7 @@ def _of_instance(
     lists: list[list[str]] = []
     with evaluated(context, [item]) as (shown,):
         back = np.linalg.inv(np.array(shown.matrix_world, np.float64))
-        scale = np.array(shown.matrix_world.to_scale()[:])
+        scale = _own_scale(shown)
         for instance in context.evaluated_depsgraph_get().object_instances:
             if not instance.is_instance or instance.parent != shown or instance.object.type not in FACES:
                 continue
@@ -153,7 +165,8 @@ def _of_instance(
             mesh = instance.object.to_mesh()
             if mesh is not None and len(mesh.polygons):  # Blender makes none of a curve without splines
                 places = compat.read_positions(mesh).astype(np.float64)
-                solids.append(_solid(mesh, (places @ matrix[:3, :3].T + matrix[:3, 3]) * scale))
+                is_mirrored = np.linalg.det(matrix[:3, :3]) * scale.prod() < 0
+                solids.append(_solid(mesh, (places @ matrix[:3, :3].T + matrix[:3, 3]) * scale, is_mirrored))
                 materials = shown_materials(instance.object, mesh)
                 lists.append([name_of(bpy.data.materials, material) for material in materials] or [""])
             instance.object.to_mesh_clear()
@@ -181,7 +194,8 @@ def _outline(vertices: Reals, triangles: Indices) -> Parts:
     return silhouette(vertices, triangles)
 
 
-def _solid(mesh: bpy.types.Mesh, vertices: Reals) -> Solid:
+def _solid(mesh: bpy.types.Mesh, vertices: Reals, is_mirrored: bool) -> Solid:
+    """The mesh with its vertices elsewhere; mirrored, its polygons turn the other way round."""
     totals = compat.read_numbers(mesh.polygons, "loop_total")
     material = compat.read_numbers(mesh.polygons, "material_index")
     smooth = np.empty(len(mesh.polygons), bool)
@@ -194,16 +208,19 @@ def _solid(mesh: bpy.types.Mesh, vertices: Reals) -> Solid:
         layer.data.foreach_get("uv", flat)
         uv = flat.reshape(-1, 2).astype(np.float64)
     mesh.calc_loop_triangles()
-    triangles = compat.read_numbers(mesh.loop_triangles, "loops", 3)
+    triangles = compat.read_numbers(mesh.loop_triangles, "loops", 3).reshape(-1, 3)
     offsets = np.concatenate([[0], np.cumsum(totals)]).astype(np.int32)
-    return Solid(vertices, corners, offsets, uv, smooth, material, triangles.reshape(-1, 3))
+    if is_mirrored:
+        back = np.repeat(offsets[:-1] + offsets[1:] - 1, totals) - np.arange(len(corners))
+        corners, uv, triangles = corners[back], uv[back], back[triangles][:, ::-1].astype(np.int32)
+    return Solid(vertices, corners, offsets, uv, smooth, material, triangles)
 
 
 def _of_curve(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, None]:
     """The closed splines of a curve in its own plane."""
     with evaluated(context, [item]) as (shown,):
         back = np.linalg.inv(np.array(shown.matrix_world, np.float64))
-        scale = np.array(shown.matrix_world.to_scale()[:2])
+        scale = _own_scale(shown)[:2]
     loops = [
         (line.points @ back[:3, :3].T + back[:3, 3])[:, :2] * scale
         for line in polylines_of(item)
