@@ -212,6 +212,15 @@ def test_files_lie_in_the_folder(tmp_path, bits):
     assert {name.split(".")[-2] for name in names if name.count(".") == 2} == {"1001", "1002"}
 
 
+def test_names_of_other_letters_have_room_for_what_the_image_shows():
+    """Of 63 bytes, where such a letter takes three."""
+    plate(21 * "\u677f")
+    bpy.ops.saddleback.tessellate(count=4, **QUICK)
+    for _ in range(2):
+        bpy.ops.saddleback.bake(resolution=16)
+        assert sorted(images()) == [f"{13 * chr(0x677F)} {label}" for label in ("Cell", "Edge Distance", "Height")]
+
+
 def test_what_shows_an_image_shows_the_next_one():
     plate()
     bpy.ops.saddleback.tessellate(count=4, **QUICK)

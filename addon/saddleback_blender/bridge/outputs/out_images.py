@@ -39,7 +39,7 @@ def folder_of(folder: str) -> Path | None:
 
 def name_of_image(prefix: str, label: str) -> str:
     """What an image is called, which has room for 63 bytes."""
-    return f"{prefix[:40]} {label}"
+    return f"{prefix.encode()[:40].decode(errors='ignore')} {label}"
 
 
 def write_images(source: bpy.types.Object, result: BakeResult, prefix: str, folder: str) -> list[str]:
