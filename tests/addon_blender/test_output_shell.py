@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The lamp shell: one closed solid, thick and wide as asked, that does not pass through itself."""
 
+import os
+
 import bpy
 import numpy as np
 import pytest
@@ -149,6 +151,16 @@ def test_walls_and_volume_are_told_and_painted_and_the_shell_is_saved_for_a_prin
     facets = np.frombuffer(path.read_bytes()[84:], [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("end", "<u2")])
     np.testing.assert_allclose(facets["corners"], places[triangles], atol=1e-6)
     assert list(tmp_path.iterdir()) == [path]
+    item.scale.x *= -1  # as Mirror leaves it
+    bpy.context.view_layer.update()
+    link = path
+    if os.name == "posix":  # elsewhere only some may make links
+        link = tmp_path / "link.stl"
+        link.symlink_to(path)
+    assert bpy.ops.saddleback.export_stl(filepath=str(link)) == {"FINISHED"}
+    assert path.is_file() and not path.is_symlink() and link.is_symlink() == (link != path)
+    mirrored = np.frombuffer(path.read_bytes()[84:], facets.dtype)["corners"].astype(float)
+    assert volume(mirrored.reshape(-1, 3), np.arange(3 * len(mirrored)).reshape(-1, 3)) > 0
     with pytest.raises(RuntimeError, match="cannot be saved"):
         bpy.ops.saddleback.export_stl(filepath=str(tmp_path / "none" / "lamp.stl"))
     bpy.ops.saddleback.tessellate(**{**QUICK, "make_shell": False})

@@ -59,7 +59,8 @@ class ExportOperator:
         if not self.filepath:
             self.report({"ERROR"}, "Name a file to save the lamp shell in")
             return {"CANCELLED"}
-        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.ending))
+        # A link stays one: what it leads to is replaced.
+        path = Path(os.path.realpath(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.ending)))
         points, triangles = _solid(context, shell)
         part = path.with_name(path.name + ".part")
         try:
@@ -103,6 +104,8 @@ def _solid(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, I
     places, triangles = compat.read_positions(mesh), read_triangles(mesh).copy()
     shown.to_mesh_clear()
     world = np.array(item.matrix_world)
+    if np.linalg.det(world[:3, :3]) < 0:  # mirrored: the outside stays outside
+        triangles = triangles[:, ::-1]
     return (places @ world[:3, :3].T + world[:3, 3]) / millimeter(compat.unit_scale(context.scene)), triangles
 
 
