@@ -79,8 +79,9 @@ def test_cells_fall_apart_and_vanish():
     whole, apart = (diagram.clip(SQUARE, gap=gap, tolerance=1e-6) for gap in (0.0, 0.2))
     assert np.count_nonzero(whole.loop_sites == 1) == 1 and whole.areas[1] > 0
     assert np.count_nonzero(apart.loop_sites == 1) != 1
-    gone = diagram.clip(SQUARE, gap=9.0)
-    assert gone.areas.sum() == 0 and len(gone.loop_sites) == 0 and np.isnan(gone.centroids).all()
+    for gap in (9.0, 1e9, 1e300):  # no more points far out than near by
+        gone = diagram.clip(SQUARE, gap=gap)
+        assert gone.areas.sum() == 0 and len(gone.loop_sites) == 0 and np.isnan(gone.centroids).all()
 
 
 def test_one_cell_stays_whole():

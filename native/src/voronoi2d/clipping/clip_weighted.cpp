@@ -300,8 +300,12 @@ void CurvedCells::keep_distance(Index site, Index other, std::vector<Loop>& loop
       is_all_far = is_all_far && is_far(loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]);
     }
   if (is_all_far) return;
-  const Loop outline = inset_outline({weighted_site(diagram_, site), weighted_site(diagram_, other)}, distance_,
-                                     tolerance_, 0.5 * (low + high), 0.5 * (high - low).norm());
+  const Bisector curve(weighted_site(diagram_, site), weighted_site(diagram_, other));
+  const Vec2 center = 0.5 * (low + high);
+  const double radius = 0.5 * (high - low).norm();
+  // Where all is nearer to a point of the curve nothing is left, and an outline far out would have points without end.
+  if ((curve.at(0) - center).norm() + radius < distance_) return loops.clear();
+  const Loop outline = inset_outline(curve, distance_, tolerance_, center, radius);
   std::vector<Loop> kept;
   std::vector<Chain> chains;
   for (Loop& loop : loops)
