@@ -160,7 +160,8 @@ void bind_stepped_sweep(py::module_& m) {
           [](const SteppedSweep& s, const py::object& samples) {
             return to_array(s.beach_curve(as_integer(samples, "samples")));
           },
-          py::arg("samples"), "(samples, 2) float64: points in directions equally far apart; none before the start.")
+          py::arg("samples"),
+          "(samples, 2) float64: points in directions equally far apart, up to 100,000; none before the start.")
       .def_property_readonly(
           "edges", [](const SteppedSweep& s) { return edge_arrays(s.edges()); }, k_edges_doc)
       .def(

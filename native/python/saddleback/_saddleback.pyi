@@ -3363,7 +3363,7 @@ class SweepCircle:
     def arcs(self) -> list[tuple[int, float, float]]:
         """List of (site, begin, end): ellipse arcs and their directions from the center, radians, counter-clockwise."""
     def beach_curve(self, samples: SupportsIndex) -> _Floats:
-        """(samples, 2) float64: points in directions equally far apart; none before the start."""
+        """(samples, 2) float64: points in directions equally far apart, up to 100,000; none before the start."""
     @property
     def edges(self) -> tuple[_Floats, _Indices, NDArray[np.bool_]]:
         """(E, 2, 2) float64 ends, (E, 2) int32 sites, (E,) bool finished: the others grow at their end, or at both. After the last event there are as many as the diagram has."""

@@ -361,7 +361,7 @@ std::vector<SteppedSweep::Arc> SteppedSweep::arcs() const {
 }
 
 std::vector<Vec2> SteppedSweep::beach_curve(Index samples) const {
-  if (samples < 1) throw InputError(message("samples: wanted 1 or more, got ", samples));
+  voronoi2d::check_samples(samples);
   const State& s = *state_;
   if (s.told) return s.told->sweep.beach_curve(s.radius, samples);
   std::vector<Index> sites;

@@ -139,7 +139,7 @@ std::vector<SteppedSweep::Arc> SweepCircles::arcs(Index circle) const {
 }
 
 std::vector<Vec2> SweepCircles::beach_curve(Index circle, Index samples) const {
-  if (samples < 1) throw InputError(message("samples: wanted 1 or more, got ", samples));
+  voronoi2d::check_samples(samples);
   return state_->circles[circle].sweep.beach_curve(radius(circle), samples);
 }
 

@@ -151,3 +151,13 @@ def test_bad_sweeps_are_named(sites, center, text):
 def test_bad_radius_is_named():
     with pytest.raises(sb.InputError, match="radius"):
         sb.SweepCircle([[0, 0]], [1, 1]).grow(-1)
+
+
+@pytest.mark.parametrize("samples", [0, 100_001, 2**31 - 1])
+def test_more_samples_than_one_can_wait_for_are_refused(samples):
+    for ask in (
+        lambda: sb.SweepCircle([[0, 0]], [1, 1]).beach_curve(samples),
+        lambda: sb.SweepCircles([[0, 0]], [[1, 1]]).beach_curve(0, samples),
+    ):
+        with pytest.raises(sb.InputError, match="samples: wanted 1 to 100000"):
+            ask()

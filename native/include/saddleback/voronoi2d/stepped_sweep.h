@@ -58,7 +58,8 @@ class SteppedSweep {
   const Vec2& center() const;
   /// The ellipse arcs about the center, counter-clockwise. O(arcs).
   std::vector<Arc> arcs() const;
-  /// Points of the beach curve in directions equally far apart, from 0. O(samples + arcs).
+  /// Points of the beach curve in directions equally far apart, from 0. O(samples + arcs). \throw InputError for fewer
+  /// than 1 or more than 100,000.
   std::vector<Vec2> beach_curve(Index samples) const;
   /// Edges within the beach curve, those that begin at it with no length, too: after the last event as many as the
   /// diagram has. O(sites touched).

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "saddleback/error.h"
+
 #include "voronoi2d/diagram/edge_curve.h"
 
 namespace saddleback::voronoi2d {
@@ -23,6 +25,11 @@ Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> 
   Voronoi2d diagram = weights.empty() ? voronoi_2d(sites, {}, job) : voronoi_2d(sites, weights, {}, job);
   diagram.weights.assign(weights.begin(), weights.end());
   return diagram;
+}
+
+void check_samples(Index samples) {
+  constexpr Index k_most = 100'000;
+  if (samples < 1 || samples > k_most) throw InputError(message("samples: wanted 1 to ", k_most, ", got ", samples));
 }
 
 DiagramSweep::DiagramSweep(const Voronoi2d& diagram, const Vec2& center, const JobStage& stage)

@@ -17,6 +17,9 @@ namespace saddleback::voronoi2d {
 /// site sooner by its weight.
 Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> weights, Job* job);
 
+/// Checks how many points of a beach curve are wanted, which takes no job. \throw InputError
+void check_samples(Index samples);
+
 /// Sweeps a circle: at radius R the points x with |x - c| + |x - s| - w = R form an ellipse about each site s that the
 /// circle about c has touched; the outermost parts of these ellipses are the beach curve, and what lies within is
 /// final. So all that a sweep shows at a radius follows from the diagram.
