@@ -1,5 +1,7 @@
 // Python: plain triangle arrays.
 
+#include <limits>
+
 #include "saddleback/mesh/triangle_arrays.h"
 
 #include "convert/convert.h"
@@ -19,6 +21,8 @@ std::span<const Vec3> points_of(const ArrayIn<double>& in) {
 Index as_vertex_count(const py::object& value) {
   const Index count = as_integer(value, "vertex_count");
   if (count < 0) throw InputError(message("vertex_count: wanted 0 or more, got ", count));
+  if (count == std::numeric_limits<Index>::max())
+    throw InputError(message("vertex_count: ", count, " is one more than 32-bit indices allow"));
   return count;
 }
 

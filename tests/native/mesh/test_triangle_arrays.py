@@ -147,6 +147,9 @@ def test_what_is_wrong_is_named() -> None:
     vertices, triangles = synthetic_cells.grid(3, 3)
     bad = triangles.copy()
     bad[4, 1] = 9
+    for ask in (sb.triangle_edges, sb.border_edges, sb.connected_parts):
+        with pytest.raises(sb.InputError, match="vertex_count: 2147483647 is one more than 32-bit indices allow"):
+            ask([(0, 1, 2)], 2**31 - 1)
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9, but there are 9"):
         sb.border_edges(bad, 9)
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
