@@ -50,8 +50,7 @@ ArrayIn<double> reals(const py::object& value, const char* name, py::ssize_t col
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') refuse(name, wanted, "type " + dtype_name(array));
   ArrayIn<double> result;
-  result.array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!result.array) throw py::error_already_set();
+  result.array = py::array_t<double, py::array::c_style | py::array::forcecast>(array);
   result.count = row_count(array, name);
   result.values = std::span(result.array.data(), static_cast<std::size_t>(result.array.size()));
   return result;
@@ -75,8 +74,7 @@ ArrayIn<Index> integers(const py::object& value, const char* name, py::ssize_t c
   if (kind == 'u' && array.itemsize() >= 4) check_range<std::uint64_t>(array, name, columns);
   if (kind == 'i' && array.itemsize() > 4) check_range<std::int64_t>(array, name, columns);
   ArrayIn<Index> result;
-  result.array = py::array_t<Index, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!result.array) throw py::error_already_set();
+  result.array = py::array_t<Index, py::array::c_style | py::array::forcecast>(array);
   if (result.array.data() == array.data())  // the caller's memory: another thread may write once they are checked
     result.array = py::array_t<Index, py::array::c_style>(result.array.request());
   result.count = row_count(array, name);

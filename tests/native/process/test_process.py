@@ -206,6 +206,23 @@ os.write(1, b"alive")
     assert done.stdout.strip() == "alive", done.stderr
 
 
+@posix
+def test_arrays_that_no_memory_is_left_for_are_a_memory_error():
+    """Those that have to be brought into another order or type: no ValueError."""
+    done = run("""
+import resource
+places, corners = np.ones((4_000_000, 4), np.float32)[:, :3], np.zeros((4_000_000, 4), np.int32)[:, :3]
+size = int(open("/proc/self/statm").read().split()[0]) * 4096 + (32 << 20)
+resource.setrlimit(resource.RLIMIT_AS, (size, size))
+for ask in (lambda: sb.project(mesh, places), lambda: sb.triangle_edges(corners, 1)):
+    try:
+        ask()
+    except MemoryError:
+        print("none left")
+""")
+    assert done.stdout.split("\n")[:2] == ["none left"] * 2, done.stderr
+
+
 def some_objects() -> dict[str, object]:
     mesh = sb.Mesh(*meshes.grid(8, 8))
     graph = sb.SaddleVertexGraph(mesh)
