@@ -266,7 +266,7 @@ def set_modifier_input(modifier: bpy.types.Modifier, name: str, value: Any) -> N
         getattr(inputs, identifier).value = value
     else:
         modifier[identifier] = value
-    if isinstance(value, bpy.types.Object):  # what depends on what is seen anew
+    if value is None or isinstance(value, bpy.types.Object):  # what depends on what is seen anew
         modifier.node_group = modifier.node_group
     modifier.id_data.update_tag()
 

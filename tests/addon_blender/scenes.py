@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects made for tests, and what is read back from them."""
 
+import time
+
 import bpy
 import numpy as np
 
@@ -113,3 +115,46 @@ def tube_radius(item):
         if modifier is not None:
             return compat.modifier_input(modifier, "Radius")
     return 0.0
+
+
+def steps(until=lambda: False, seconds=60.0):
+    """Takes the steps of Auto Update until there is nothing to be done, or until something is so.
+
+    Without a window there are no timers that would.
+    """
+    from saddleback_blender import jobs
+    from saddleback_blender.ops import live
+
+    bpy.context.view_layer.update()  # which tells the handler of changes
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        pause = live.step(bpy.context)
+        if pause is None or until():
+            return
+        time.sleep(pause)
+    raise AssertionError(f"nothing came of it: {jobs.state.live}")
+
+
+def begin():
+    """Takes steps until a run of Auto Update goes on."""
+    from saddleback_blender.ops import live
+
+    steps(lambda: live.live.operator is not None)
+    assert live.live.operator is not None
+
+
+def switch_on(item):
+    """Auto Update of the active layer."""
+    layer = item.saddleback.layers[item.saddleback.layer_index]
+    assert not layer.auto_update  # off by default
+    layer.auto_update = True
+    item.update_tag()  # as a click does
+    steps()
+
+
+def paint(item, around=(1.0, 0.0, 0.0), reach=0.4):
+    """A dab, as a brush leaves it."""
+    near = np.flatnonzero(np.linalg.norm(positions(item.data) - around, axis=1) < reach)
+    item.vertex_groups["paint"].add(near.tolist(), 1.0, "REPLACE")
+    item.data.update_tag()
+    return near

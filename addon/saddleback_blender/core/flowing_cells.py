@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import os
+import sys
+import threading
 import uuid
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +22,9 @@ from .solids.edge_network import edge_network
 
 # Of a cell's size: sites that would move by less rest, and their cells are not found anew. Less than one sees.
 UNSEEN = 1e-3
+# The same in the first step after a change: cells about it are to be seen to move at once, those farther away follow.
+NEAR = 2e-2
+BEHIND = 10  # how nice a thread is to the window once something is seen
 
 
 @dataclass(frozen=True)
@@ -98,18 +105,31 @@ class FlowingCells:
         """Evens out the cells of this frame by a density, in calls that are longer and longer: each is shown."""
         sb = native.load()
         self._cells = self._cells or sb.CellCache()
-        done, steps = 0, 1
+        done, steps, least_move = 0, 1, NEAR if settings.iterations > 1 else UNSEEN
         while True:
             end = 0.5 + 0.4 * min(1.0, (done + steps) / settings.iterations)
             with progress.stage(end, "evening out the cells") as job:
                 cvt = sb.centroidal_voronoi(
                     graph, sites=self._sites, density=density, method=settings.method.lower(), max_iterations=steps,
-                    least_move=UNSEEN, cache=self._cells, threads=threads, job=job,
+                    least_move=least_move, cache=self._cells, threads=threads, job=job,
                 )  # fmt: skip
             self.keep(frame, cvt.cells)
             done += int(cvt.iterations)
             self.show(cvt.cells, done)
-            if cvt.iterations < steps or done >= settings.iterations:
+            is_at_rest = cvt.iterations < steps and least_move == UNSEEN
+            if is_at_rest or done >= settings.iterations:
                 energy = np.asarray(cvt.energy, np.float64)
                 return Relaxed(cvt.cells, energy, done, str(cvt.stop_reason), float(cvt.normalized_energy))
-            steps = min(2 * steps, settings.iterations - done)
+            steps, least_move = min(2 * steps, settings.iterations - done), UNSEEN
+            threads = _step_back(threads)
+
+
+def _step_back(threads: int) -> int:
+    """Lets the window come first from now on: it shall have a core, where it draws by the processor all that it needs.
+
+    Returns of how many threads a run is to make use.
+    """
+    if sys.platform == "linux" and threading.current_thread() is not threading.main_thread():
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), BEHIND)
+    return max(1, min(threads or sys.maxsize, (os.cpu_count() or 1) - 1))

@@ -86,6 +86,7 @@ class SurfaceOperator(PolledOperator):
     _called: tuple[str, ...]  # names of settings that the caller gave
     _others: list[str]  # names of selected objects that are still to be worked on
     _is_filled = False  # the active object is done, others may follow
+    is_evaluated = False  # all that is read, right now
     _is_watched = False  # by a person, who can stop it
     _surface: Surface  # that the run is made on
     _follower: Follower | None = None
@@ -238,7 +239,7 @@ class SurfaceOperator(PolledOperator):
     ) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
         self._began, self._is_by_hand, self._lengths = perf_counter(), is_by_hand, {}
         jobs.state.kind = self.settings_name
-        source = usable_source(context)
+        source = usable_source(context, self.is_evaluated)
         if self.makes_layers:
             check_layer(source)
         self._layer = layer_of(source)

@@ -13,12 +13,15 @@ from contextlib import nullcontext
 from typing import Any
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
+from numpy.typing import NDArray
 
-from .. import compat, jobs
+from .. import compat, jobs, rollback
 from ..bridge.inputs.mesh_in import level_place, scale_of
 from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_collection import hair
+from ..bridge.outputs.standing import follow_again, let_stand, may_move
 from ..core.flowing_cells import FlowingCells
 from ..props import TOLD, existing_group
 from ..props.layers import active_layer
@@ -26,6 +29,7 @@ from .live_inputs import goes_along, inputs_of, is_child, name_of_input
 from .quiet import KINDS, quiet
 
 STEP = 0.02  # seconds between two steps while something is to be done
+HAS_WINDOW = not bpy.app.background
 WAIT = 0.2  # the same while nothing may be done
 REST = 0.3  # seconds without a change before a result is written: what is under way, as a stroke, ends first
 WAITS = {
@@ -47,6 +51,7 @@ class Watched:
         self.seen: dict[str, str] = {}  # by kind of run: the content of the request that was made last
         self.inputs: set[tuple[str, str]] = set()  # data-blocks that are read
         self.scale = b""  # of the object, where it is all that is read of its place
+        self.places: NDArray[np.float32] | None = None  # (V, 3) of its vertices, while what follows it stands
         self.is_changed = False
         self.is_accepted = False  # what was made belongs to what it is made from, whatever that is by now
 
@@ -63,6 +68,7 @@ class Live:
         self.is_writing = False
         self.changed_at = self.read_until = 0.0
         self.has_news = False  # objects may have come or gone
+        self.is_told = False  # by Blender of a change, right now
 
     def stop(self) -> None:
         """Cancels the run, without waiting; nothing of it is in the file."""
@@ -77,6 +83,7 @@ class Live:
         """Begins anew, as with another file."""
         self.stop()
         self.watched.clear()
+        follow_again()
         jobs.state.live.clear()
         jobs.state.live_ended = ""
 
@@ -150,6 +157,31 @@ def _look_around(context: bpy.types.Context) -> None:
                 watched.is_changed = True
             jobs.state.live[item.name] = jobs.state.live.pop(watched.name, "")
             watched.name, watched.inputs = item.name, inputs_of(item)
+    _check_standing()
+
+
+def _let_stand(watched: Watched) -> None:
+    """Lets what follows an object stand while the object is only painted. Scripts are to see at once what follows."""
+    source = bpy.data.objects[watched.name]
+    if HAS_WINDOW and not may_move(source):
+        watched.places = compat.read_positions(source.data)
+        let_stand(source, watched.places)
+
+
+def _stands(watched: Watched) -> bool:
+    """Tells whether the object's vertices are where they were when what follows it was let stand."""
+    source = bpy.data.objects.get(watched.name)
+    if watched.places is None or source is None or may_move(source):
+        return False
+    return np.array_equal(compat.read_positions(source.data), watched.places)
+
+
+def _check_standing() -> None:
+    """Lets follow again what belongs to an object that may move, or is no longer watched."""
+    for watched in live.watched.values():
+        watched.places = watched.places if _stands(watched) else None
+    still = {watched.name for watched in live.watched.values() if watched.places is not None}
+    follow_again(lambda host: host.name not in still)
 
 
 def _key(item: bpy.types.ID) -> int:
@@ -242,6 +274,7 @@ def _read(context: bpy.types.Context, target: Watched, kind: str) -> tuple[Any, 
     """Reads what a run of this kind needs."""
     began = time.perf_counter()
     operator = quiet(kind)
+    operator.is_evaluated = live.is_told
     if kind == "tessellate":
         operator.flowing = target.cells
     source = bpy.data.objects[target.name]
@@ -276,6 +309,7 @@ def _begin(context: bpy.types.Context, target: Watched) -> None:
             _start(target, operator, call)
             return
     target.is_changed = target.is_accepted = False
+    _let_stand(target)
     _tell(context, target, text)
 
 
@@ -293,6 +327,7 @@ def _write(context: bpy.types.Context, target: Watched, operator: Any) -> None:
     try:
         with context.temp_override(object=source, active_object=source):
             is_written = operator.finish(bpy.context)
+        _let_stand(target)
         context.view_layer.update()
         if is_written and not bpy.app.background:
             bpy.ops.ed.undo_push(message=f"Auto Update {operator.bl_label}")
@@ -349,9 +384,13 @@ def _is_only_moved(update: bpy.types.DepsgraphUpdate, scales: dict[str, bytes]) 
 def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     """Notes which objects' inputs were changed. After each change in Blender, so that it has to be quick."""
     live.has_news = True
-    if live.is_writing or depsgraph.mode == "RENDER" or not (live.watched or jobs.state.live_asked):
+    if live.is_writing or live.is_told or depsgraph.mode == "RENDER" or not (live.watched or jobs.state.live_asked):
         return
     kept = {watched.name: watched.scale for watched in live.watched.values() if watched.scale}
+    touched = {name_of_input(update.id.original) for update in depsgraph.updates}
+    standing = [watched for watched in live.watched.values() if watched.places is not None and touched & watched.inputs]
+    if not all(map(_stands, standing)):
+        _check_standing()
     changed = [update.id.original for update in depsgraph.updates if not _is_only_moved(update, kept)]
     names, keys = {name_of_input(block) for block in changed}, {_key(block) for block in changed}
     found = [
@@ -364,6 +403,22 @@ def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     if found or jobs.state.live_asked:
         live.changed_at = time.perf_counter()
         wake()
+    if len(found) == 1 and HAS_WINDOW and _may_begin_now(found[0]):
+        live.is_told = True
+        try:
+            tick()
+        finally:
+            live.is_told = False
+
+
+def _may_begin_now(watched: Watched) -> bool:
+    """Tells whether a run may begin before the window is drawn, while Blender tells of a change.
+
+    What is read must be the object's own and be there: nothing may be evaluated now.
+    """
+    is_own = watched.scale and watched.places is not None
+    is_free = live.operator is None and jobs.state.task is None and not rollback.is_writing()
+    return bool(is_own and is_free and not watched.is_accepted)
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -371,6 +426,7 @@ def accept(*_: Any) -> None:
     """After Undo and Redo, and in a file that was opened, what was made is what belongs to it."""
     live.stop()
     _accept(list(live.watched.values()))
+    _check_standing()
     live.has_news = True
     wake()
 
@@ -379,6 +435,15 @@ def accept(*_: Any) -> None:
 def leave(*_: Any) -> None:
     """Another file is opened."""
     live.forget()
+
+
+@persistent  # type: ignore[untyped-decorator]
+def follow(*_: Any) -> None:
+    """Files and renders get what follows as it is without us."""
+    for watched in live.watched.values():
+        watched.places, watched.is_changed = None, True
+    follow_again()
+    wake()
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -397,6 +462,8 @@ HANDLERS = {
     "load_pre": leave,
     "load_post": accept,
     "annotation_post": mark_strokes,
+    "save_pre": follow,
+    "render_init": follow,
 }
 
 

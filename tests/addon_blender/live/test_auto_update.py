@@ -4,78 +4,28 @@
 Blender without a window has no timers; these tests take the steps that one would.
 """
 
+import os
+import sys
 import threading
 import time
 
 import bpy
 import numpy as np
 import pytest
-from scenes import attribute, fingerprint, grid, positions, sphere
+from scenes import attribute, begin, fingerprint, grid, paint, positions, steps, switch_on
 
 from saddleback_blender import jobs
+from saddleback_blender.bridge.inputs.mesh_in import read_surface
 from saddleback_blender.bridge.outputs import live_preview, out_edges
 from saddleback_blender.bridge.outputs.out_collection import find_output
-from saddleback_blender.core import cache
+from saddleback_blender.core import cache, native
 from saddleback_blender.core.errors import BadInputError
+from saddleback_blender.core.flowing_cells import FlowingCells
 from saddleback_blender.ops import live, tessellate
+from saddleback_blender.props.kept_sites import kept_cells
 
 CELL = "saddleback_cell"
-
-
-def steps(until=lambda: False, seconds=60.0):
-    """Takes steps until there is nothing to be done, or until something is so."""
-    bpy.context.view_layer.update()  # which tells the handler of changes
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline:
-        pause = live.step(bpy.context)
-        if pause is None or until():
-            return
-        time.sleep(pause)
-    raise AssertionError(f"nothing came of it: {jobs.state.live}")
-
-
-def begin(until=lambda: live.live.operator is not None):
-    """Takes steps until a run goes on."""
-    steps(until)
-    assert until()
-
-
-def switch_on(item):
-    """Auto Update of the active layer."""
-    layer = item.saddleback.layers[item.saddleback.layer_index]
-    assert not layer.auto_update  # off by default
-    layer.auto_update = True
-    item.update_tag()  # as a click does
-    steps()
-
-
 REST = live.REST
-
-
-@pytest.fixture(autouse=True)
-def little_rest(monkeypatch):
-    """Nobody is at a stroke, whose end results wait for."""
-    monkeypatch.setattr(live, "REST", 0.03)
-
-
-@pytest.fixture
-def item():
-    """A ball with cells that follow."""
-    ball = sphere(subdivisions=4)
-    ball.vertex_groups.new(name="paint").add([0], 1.0, "REPLACE")
-    settings = ball.saddleback.tessellate
-    settings.density_source, settings.density_name, settings.density_smaller_by = "VERTEX_GROUP", "paint", 3.0
-    bpy.ops.saddleback.tessellate(count=80)
-    switch_on(ball)
-    return ball
-
-
-def paint(item, around=(1.0, 0.0, 0.0), reach=0.4):
-    """A dab, as a brush leaves it."""
-    near = np.flatnonzero(np.linalg.norm(positions(item.data) - around, axis=1) < reach)
-    item.vertex_groups["paint"].add(near.tolist(), 1.0, "REPLACE")
-    item.data.update_tag()
-    return near
 
 
 def cells(item):
@@ -105,6 +55,34 @@ def test_cells_of_one_dab_begin_with_those_of_the_last(item):
     paint(item, (0.0, 1.0, 0.0))
     steps()
     assert watched.cells._cells is known
+
+
+def test_the_first_thing_seen_moves_the_cells_about_the_dab_only(item, monkeypatch):
+    places = kept_cells(item)[1]
+    seen = []
+    monkeypatch.setattr(FlowingCells, "show", lambda _self, cells, done: seen.append((cells.sites, done)))
+    paint(item)
+    begin()
+    steps()
+    read = read_surface(item, item.data)
+    surface = native.load().Mesh(read.vertices, read.triangles)
+    first, last = (np.linalg.norm(sites.positions(surface) - places, axis=1) for sites in (seen[0][0], seen[-1][0]))
+    size = np.sqrt(surface.area / 80)
+    assert 0 < np.count_nonzero(first > 1e-3 * size) < np.count_nonzero(last > 1e-3 * size)
+    assert (first[first > 1e-3 * size] > 1e-2 * size).all()
+    assert seen[0][1] == 1 < seen[-1][1] <= 15
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads have no priority of their own")
+def test_what_is_seen_already_goes_on_behind_the_window(item, monkeypatch):
+    calls = []
+    monkeypatch.setattr(os, "setpriority", lambda *given: calls.append((threading.get_native_id(), *given)))
+    paint(item)
+    steps()
+    assert calls and all(
+        thread == who != threading.get_native_id() and (kind, nice) == (os.PRIO_PROCESS, 10)
+        for thread, kind, who, nice in calls
+    )
 
 
 def test_cells_follow_the_brush_where_it_was(item, monkeypatch):

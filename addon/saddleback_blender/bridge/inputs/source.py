@@ -43,7 +43,7 @@ def why_not(context: bpy.types.Context) -> str:
     return ""
 
 
-def usable_source(context: bpy.types.Context) -> bpy.types.Object:
+def usable_source(context: bpy.types.Context, is_evaluated: bool = False) -> bpy.types.Object:
     """The active object. Raises BadInputError saying why it cannot be used."""
     problem = why_not(context)
     if problem:
@@ -61,7 +61,8 @@ def usable_source(context: bpy.types.Context) -> bpy.types.Object:
         raise BadInputError(f"'{name}' is sculpted with dynamic topology: leave Sculpt Mode first")
     if source.mode == "SCULPT" and any(modifier.type == "MULTIRES" for modifier in source.modifiers):
         raise BadInputError(f"'{name}' is sculpted with a Multiresolution modifier: leave Sculpt Mode first")
-    context.view_layer.update()  # a script may have moved it just now
+    if not is_evaluated:
+        context.view_layer.update()  # a script may have moved it just now
     _check_transform(source)
     if not len(source.data.vertices):
         raise BadInputError(f"'{name}' is empty: it has no vertices")

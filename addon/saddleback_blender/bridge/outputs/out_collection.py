@@ -39,6 +39,7 @@ from ..tokens import (
 from .hand_edits import CONTENT, is_edited, keep_data, keep_object, keep_shading, make_ordinary
 from .out_attributes import clear_attributes, forget_layer_names
 from .rest_places import forget_rest
+from .standing import follow_again
 
 COLLECTION = "saddleback_outputs"  # on our collections
 
@@ -221,6 +222,7 @@ def clear_layer(context: bpy.types.Context, source: bpy.types.Object, layer: str
     """Removes what was made in one layer; with the last one goes what all have. Returns how many there were."""
     if is_last:
         return clear_outputs(context, source)
+    follow_again(source.__eq__)
     items = outputs_of(source, layer)
     _remove_all([item for item in _all_of(source) if _is_in(item, layer)])
     rollback.when_written(nodes.remove_unused)
@@ -232,6 +234,7 @@ def clear_layer(context: bpy.types.Context, source: bpy.types.Object, layer: str
 
 def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
     """Removes all that we made for the source and nothing else; returns how many objects and attributes went."""
+    follow_again(source.__eq__)
     items = outputs_of(source)
     _remove_all(_all_of(source))
     rollback.when_written(nodes.remove_unused)
@@ -245,6 +248,7 @@ def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
 
 def free_layer(source: bpy.types.Object, layer: str) -> int:
     """Makes all that was made in a layer the artist's own; returns how many objects and attributes that are."""
+    follow_again(source.__eq__)
     items, surface = outputs_of(source, layer), find_output(source, SURFACE_ROLE)
     for item in [item for item in _all_of(source) if _is_in(item, layer)]:
         make_ordinary(item)
