@@ -59,14 +59,14 @@ std::string read_file(const std::string& path, const JobStage& stage) {
 }
 
 // One vertex for all corners at the same place, in the order of their first.
-MeshArrays weld(const MeshArrays& soup) {
+MeshArrays weld(const MeshArrays& soup, const JobStage& stage) {
   std::vector<Vec3> positions;
   std::vector<std::uint8_t> finite;
   for (std::size_t i = 0; i < soup.xyz.size(); i += 3) {
     positions.emplace_back(soup.xyz[i], soup.xyz[i + 1], soup.xyz[i + 2]);
     finite.push_back(positions.back().allFinite());
   }
-  const std::vector<Index> cluster = weld_clusters(positions, finite, 0);
+  const std::vector<Index> cluster = weld_clusters(positions, finite, 0, stage);
   std::vector<Index> number(positions.size());
   MeshArrays result;
   for (std::size_t v = 0; v < positions.size(); ++v) {
@@ -96,7 +96,7 @@ MeshArrays parse_arrays(const std::string& path, std::string_view contents, cons
     throw MeshError(message(path, ", ", error.what()));
   }
   if (arrays.triangles.empty()) throw MeshError(message(path, " has no faces; give a file with at least one"));
-  if (reader == read_stl) arrays = weld(arrays);
+  if (reader == read_stl) arrays = weld(arrays, stage);
   stage.update(1.0);
   return arrays;
 }

@@ -107,7 +107,7 @@ std::vector<Index> mend_all(RepairState& state, const JobStage& stage) {
   for (int round = 0;; ++round) {
     const bool patient = round < k_patient_rounds;
     const JobStage part = stage.part(round == 0 ? 0 : 0.8, round == 0 ? 0.8 : 1);
-    std::vector<Index> now = separate_fans(state, glue_sheets(state, part.part(0, 0.7)), patient);
+    std::vector<Index> now = separate_fans(state, glue_sheets(state, part.part(0, 0.7)), patient, part);
     if (round == 0) homes = std::move(now);
     part.update(0.8);
     if (!mend_areas(state, patient, part)) return homes;
@@ -172,7 +172,7 @@ RepairResult repair_once(std::span<const double> xyz, std::span<const Index> tri
   RepairState state = begin_state(xyz, triangles);
   const std::vector<std::uint8_t> used = drop_unusable(state);
   stage.update(0.05);
-  state.cluster = weld_clusters(state.positions, used, options.weld_distance);
+  state.cluster = weld_clusters(state.positions, used, options.weld_distance, stage);
   if (options.stitch) stitch_borders(state, options.weld_distance, stage);
   const std::vector<Index> homes = mend_all(state, stage.part(0.2, 0.8));
   count_welded(state, homes, used);

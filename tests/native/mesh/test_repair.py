@@ -11,6 +11,7 @@ from hypothesis.extra import numpy as hnp
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_it_stops_when_silent
 
 
 def volume(mesh):
@@ -364,6 +365,11 @@ def test_filling_makes_no_edge_that_is_there_already():
     assert (mesh.is_closed, mesh.face_count) == (True, 4)
     lone, report = sb.repair(vertices[:3], [(0, 1, 2)], fill_holes=10)
     assert (lone.face_count, report.changes) == (1, {})
+
+
+def test_it_stops_soon_while_it_welds_many_vertices():
+    vertices, triangles = meshes.icosphere(7)
+    check_it_stops_when_silent(lambda job: sb.repair(vertices, triangles, 1e-6, job=job), 0)
 
 
 def test_time_of_many_holes_grows_with_the_mesh():

@@ -62,8 +62,8 @@ class VertexGrid {
   std::unordered_map<std::uint64_t, std::vector<Index>> cells_;
 };
 
-std::vector<Index> border_halfedges(std::span<const Triangle> triangles, Index vertex_count) {
-  const EdgeTable edges = build_edge_table(triangles, vertex_count);
+std::vector<Index> border_halfedges(std::span<const Triangle> triangles, Index vertex_count, const JobStage& stage) {
+  const EdgeTable edges = build_edge_table(triangles, vertex_count, stage);
   std::vector<Index> border;
   for (Index e = 0; e < edges.edge_count(); ++e)
     if (edges.edge(e).size() == 1) border.push_back(edges.edge(e)[0]);
@@ -74,7 +74,7 @@ std::vector<Index> border_halfedges(std::span<const Triangle> triangles, Index v
 
 std::vector<BorderContact> border_contacts(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                            const Reach& reach, const JobStage& stage) {
-  const std::vector<Index> border = border_halfedges(triangles, static_cast<Index>(positions.size()));
+  const std::vector<Index> border = border_halfedges(triangles, static_cast<Index>(positions.size()), stage);
   std::vector<Index> vertices;
   double total = 0;
   for (const Index h : border) {
@@ -161,7 +161,7 @@ CloseBorders tell_close_borders(std::span<const Vec3> positions, std::span<const
   const std::int64_t most_visits = k_looks_a_face * std::ssize(triangles) + k_looks_always;
   // Copies at one place were made on purpose, by a repair: they count as one.
   const std::vector<std::uint8_t> all(positions.size(), 1);
-  const std::vector<Index> place = weld_clusters(positions, all, 0);
+  const std::vector<Index> place = weld_clusters(positions, all, 0, stage);
   std::vector<Triangle> placed;
   placed.reserve(triangles.size());
   for (const Triangle& t : triangles) placed.push_back({place[t[0]], place[t[1]], place[t[2]]});

@@ -31,9 +31,10 @@ void turn_faces(Sheets& sheets) {
 
 class FanSeparator {
  public:
-  FanSeparator(RepairState& state, Sheets& sheets)
+  FanSeparator(RepairState& state, Sheets& sheets, const JobStage& stage)
       : state_(state),
         sheets_(sheets),
+        stage_(stage),
         taken_(state.positions.size(), 0),
         homes_(state.positions.size(), k_none),
         cluster_homes_(state.positions.size(), k_none) {}
@@ -43,6 +44,7 @@ class FanSeparator {
     std::vector<Triangle> result(sheets_.fine.size(), {k_none, k_none, k_none});
     std::vector<Index> fan;
     for (Index corner = 0; corner < corners; ++corner) {
+      stage_.check();
       if (result[corner / 3][corner % 3] != k_none) continue;
       collect(corner, fan);
       const Index vertex = take_vertex(fan);
@@ -93,6 +95,7 @@ class FanSeparator {
 
   RepairState& state_;
   Sheets& sheets_;
+  const JobStage& stage_;
   std::vector<std::uint8_t> taken_;
   std::vector<Index> homes_, cluster_homes_;
 };
@@ -104,9 +107,9 @@ struct Seam {
 };
 
 // Returns, of each set of edges with the same two vertices, all but the first.
-std::vector<Seam> surplus_edges(const Sheets& sheets, Index vertex_count) {
+std::vector<Seam> surplus_edges(const Sheets& sheets, Index vertex_count, const JobStage& stage) {
   std::vector<Seam> result;
-  const EdgeTable edges = build_edge_table(sheets.fine, vertex_count);
+  const EdgeTable edges = build_edge_table(sheets.fine, vertex_count, stage);
   for (Index e = 0; e < edges.edge_count(); ++e) {
     const std::span<const Index> around = edges.edge(e);
     if (around.size() == 1 || (around.size() == 2 && sheets.twins[around[0]] == around[1])) continue;
@@ -166,12 +169,12 @@ class Divider {
 
 }  // namespace
 
-std::vector<Index> separate_fans(RepairState& state, Sheets sheets, bool divide) {
+std::vector<Index> separate_fans(RepairState& state, Sheets sheets, bool divide, const JobStage& stage) {
   turn_faces(sheets);
-  std::vector<Index> homes = FanSeparator(state, sheets).run();
+  std::vector<Index> homes = FanSeparator(state, sheets, stage).run();
   for (std::size_t i = 0; i < sheets.faces.size(); ++i) state.triangles[sheets.faces[i]] = sheets.fine[i];
   Divider divider(state);
-  for (const Seam& seam : surplus_edges(sheets, state.vertex_count())) {
+  for (const Seam& seam : surplus_edges(sheets, state.vertex_count(), stage)) {
     if (divide) {
       divider.divide(seam);
       continue;

@@ -99,7 +99,7 @@ class Gluer {
   void run(const JobStage& stage) {
     glue_plain_edges();
     stage.check();
-    orient();
+    orient(stage);
     cut_seams();
     turn_minorities(patch_, patch_count_);
     stage.check();
@@ -158,7 +158,7 @@ class Gluer {
   }
 
   // Breadth first over glued edges, the ones where the input is consistent first.
-  void orient() {
+  void orient(const JobStage& stage) {
     struct Step {
       Index face;
       bool turned;
@@ -169,6 +169,7 @@ class Gluer {
       if (patch_[seed] != k_none) continue;
       front.push_back({seed, false});
       while (!front.empty()) {
+        stage.check();
         const Step step = front.front();
         front.pop_front();
         if (patch_[step.face] != k_none) continue;
@@ -297,11 +298,11 @@ Sheets glue_sheets(RepairState& state, const JobStage& stage) {
   Sheets sheets = gather(state);
   if (drop_repeated(state, sheets)) sheets = gather(state);
   stage.update(0.1);
-  EdgeTable edges = build_edge_table(sheets.coarse, state.vertex_count());
+  EdgeTable edges = build_edge_table(sheets.coarse, state.vertex_count(), stage);
   stage.update(0.4);
   if (drop_duplicates(state, sheets, edges)) {
     sheets = gather(state);
-    edges = build_edge_table(sheets.coarse, state.vertex_count());
+    edges = build_edge_table(sheets.coarse, state.vertex_count(), stage);
   }
   stage.update(0.6);
   Gluer(state, sheets, edges).run(stage);

@@ -123,7 +123,7 @@ class LeastArea {
 void fill_holes(RepairState& state, Index most_edges, const JobStage& stage) {
   std::vector<Triangle> triangles;
   for (const Index f : state.live_faces()) triangles.push_back(state.triangles[f]);
-  const EdgeTable table = build_edge_table(triangles, state.vertex_count());
+  const EdgeTable table = build_edge_table(triangles, state.vertex_count(), stage);
   EdgeSet edges(triangles, table);
   for (const auto& [loop, along] : border_loops(triangles, table)) {
     // A loop of three about a single face would only give it a back.

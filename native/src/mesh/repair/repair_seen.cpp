@@ -42,7 +42,7 @@ struct Seen {
 /// Faces seen along a line, from its beginning and from its end.
 class View {
  public:
-  View(const RepairState& state, const Sheets& sheets, int side, const Vec3& along)
+  View(const RepairState& state, const Sheets& sheets, int side, const Vec3& along, const JobStage& stage)
       : state_(state), sheets_(sheets), side_(side), along_(along), x_(along.unitOrthogonal()), y_(along.cross(x_)) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
     for (const Triangle& face : sheets.coarse)
@@ -55,7 +55,10 @@ class View {
     to_pixels_ = extent > 0 ? side / extent : 0;
     first_.assign(static_cast<std::size_t>(side) * side, {std::numeric_limits<double>::infinity()});
     last_.assign(first_.size(), {-std::numeric_limits<double>::infinity()});
-    for (Index i = 0; i < static_cast<Index>(sheets.coarse.size()); ++i) draw(i);
+    for (Index i = 0; i < static_cast<Index>(sheets.coarse.size()); ++i) {
+      stage.check();
+      draw(i);
+    }
   }
 
   /// Adds the area of which each body is seen from the front, and from the back: views are of different scales.
@@ -170,8 +173,7 @@ void turn_seen_outward(const RepairState& state, Sheets& sheets, const std::vect
   const int side = static_cast<int>(std::clamp<double>(std::min(detail, affordable), k_least_side, k_most_side));
   std::vector<std::array<double, 2>> seen(label_count, {0, 0});
   for (const std::array<double, 3>& d : k_directions) {
-    stage.check();
-    View(state, sheets, side, Vec3(d[0], d[1], d[2]).normalized()).add(labels, seen);
+    View(state, sheets, side, Vec3(d[0], d[1], d[2]).normalized(), stage).add(labels, seen);
   }
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto& [front, back] = seen[labels[i]];

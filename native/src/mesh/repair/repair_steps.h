@@ -34,8 +34,9 @@ struct RepairState {
 
 /// Finds for each vertex marked in `used` the vertex that it is welded to: the smallest one at the same place or, with
 /// a distance, the first in order that lies within it. Those that stay are further apart than the distance. O(V)
-/// expected.
-std::vector<Index> weld_clusters(std::span<const Vec3> positions, std::span<const std::uint8_t> used, double distance);
+/// expected. \throw Cancelled, as all of these steps.
+std::vector<Index> weld_clusters(std::span<const Vec3> positions, std::span<const std::uint8_t> used, double distance,
+                                 const JobStage& stage);
 
 /// Live faces as a surface under construction: which half-edges are glued to which, and which faces are turned over.
 /// Half-edges are numbered by the place of their face in `faces`.
@@ -62,7 +63,7 @@ void turn_seen_outward(const RepairState& state, Sheets& sheets, const std::vect
 /// Gives every fan of glued corners a vertex of its own, writes the faces back, turned as they should be, and divides
 /// edges that two vertices share more than once (`divide` false: drops their faces). Afterwards the state is manifold.
 /// The returned vector says for each vertex of before which vertex stands for it now, k_none if none does.
-std::vector<Index> separate_fans(RepairState& state, Sheets sheets, bool divide);
+std::vector<Index> separate_fans(RepairState& state, Sheets sheets, bool divide, const JobStage& stage);
 
 /// Mends faces without area by edge collapses and flips in OpenMesh's half-edges, dropping the ones that resist
 /// (`patient` false: drops them all). \pre manifold. Returns whether there were any: manifoldness may then be lost.

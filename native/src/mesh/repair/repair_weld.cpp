@@ -69,13 +69,15 @@ bool before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-std::vector<Index> weld_exactly(std::span<const Vec3> positions, std::span<const std::uint8_t> used) {
+std::vector<Index> weld_exactly(std::span<const Vec3> positions, std::span<const std::uint8_t> used,
+                                const JobStage& stage) {
   std::vector<Index> order, cluster(positions.size());
   for (Index v = 0; v < static_cast<Index>(positions.size()); ++v) {
     cluster[v] = v;
     if (used[v]) order.push_back(v);
   }
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    stage.check();
     if (before(positions[a], positions[b])) return true;
     return !before(positions[b], positions[a]) && a < b;
   });
@@ -86,17 +88,19 @@ std::vector<Index> weld_exactly(std::span<const Vec3> positions, std::span<const
 
 }  // namespace
 
-std::vector<Index> weld_clusters(std::span<const Vec3> positions, std::span<const std::uint8_t> used, double distance) {
+std::vector<Index> weld_clusters(std::span<const Vec3> positions, std::span<const std::uint8_t> used, double distance,
+                                 const JobStage& stage) {
   double largest = 0;
   for (std::size_t v = 0; v < positions.size(); ++v)
     if (used[v]) largest = std::max(largest, positions[v].cwiseAbs().maxCoeff());
   // Below the resolution of the coordinates a distance can only mean the same place.
   constexpr double k_resolution = 0x1p-50;
-  if (distance <= largest * k_resolution) return weld_exactly(positions, used);
+  if (distance <= largest * k_resolution) return weld_exactly(positions, used, stage);
 
   LeaderGrid grid(positions, distance);
   std::vector<Index> cluster(positions.size());
   for (Index v = 0; v < static_cast<Index>(positions.size()); ++v) {
+    stage.check();
     cluster[v] = v;
     if (!used[v]) continue;
     const Index leader = grid.leader_near(v);

@@ -30,11 +30,12 @@ void sort_bucket(Entry* begin, Entry* end) {
 
 }  // namespace
 
-EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_count) {
+EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_count, const JobStage& stage) {
   std::vector<Index> bucket(static_cast<std::size_t>(vertex_count) + 1, 0);
   const Index face_count = static_cast<Index>(triangles.size());
   const auto for_each_halfedge = [&](auto&& visit) {
     for (Index f = 0; f < face_count; ++f) {
+      stage.check();
       const Triangle& t = triangles[f];
       visit(std::min(t[0], t[1]), std::max(t[0], t[1]), 3 * f);
       visit(std::min(t[1], t[2]), std::max(t[1], t[2]), 3 * f + 1);
@@ -51,6 +52,7 @@ EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_cou
   table.begins.reserve(entries.size() / 2 + 1);
   Index begin = 0;
   for (Index v = 0; v < vertex_count; ++v) {
+    stage.check();
     const Index end = bucket[v];  // the scatter moved each bucket's start to its end
     sort_bucket(entries.data() + begin, entries.data() + end);
     for (Index i = begin; i < end; ++i) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -22,7 +23,8 @@ struct EdgeTable {
 };
 
 /// A bucket per smaller vertex (counting sort), each sorted by itself: O(V + F) when valences are bounded.
-EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_count);
+/// \throw Cancelled
+EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_count, const JobStage& stage = {});
 
 /// The other half-edge of each one's edge; k_none where the edge has not two.
 std::vector<Index> twins_of(const EdgeTable& edges);
