@@ -8,6 +8,7 @@
 #include "convert/planar.h"
 #include "convert/state.h"
 #include "support/memory/large_memory.h"
+#include "voronoi2d/sites/site_order.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -57,6 +58,7 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   Voronoi2dOptions options{
       .circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads"), .is_pinned = pinned};
   const ArrayIn<double> points = as_points2(sites, "sites");
+  voronoi2d::check_site_count(static_cast<std::size_t>(points.count));  // before they are copied
   const std::vector<double> radii = as_weights(weights, static_cast<std::size_t>(points.count));
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");

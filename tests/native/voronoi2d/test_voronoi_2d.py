@@ -301,3 +301,9 @@ def test_diagrams_of_sizes_nearly_alike_come_and_go() -> None:
     less = diagrams(15_700)
     assert all(len(diagram.sites) == 15_700 for diagram in less)
     assert all(len(diagram.sites) == 1 << 14 for diagram in full)
+
+
+def test_more_sites_than_32_bits_number_the_half_edges_of_are_refused() -> None:
+    """At once: no page of these zeros is ever there."""
+    with pytest.raises(sb.InputError, match="sites: wanted up to 250000000, got 250000001"):
+        sb.voronoi_2d(np.zeros((250_000_001, 2)), device="cpu")

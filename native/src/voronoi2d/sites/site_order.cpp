@@ -169,7 +169,13 @@ class Gatherer {
 
 }  // namespace
 
+void check_site_count(std::size_t count) {
+  constexpr std::size_t k_most = 250'000'000;  // two triangles each, of four half-edges, and some to close the plane
+  if (count > k_most) throw InputError(message("sites: wanted up to ", k_most, ", got ", count));
+}
+
 OrderedSites order_sites(std::span<const Vec2> sites, int threads, const JobStage& stage) {
+  check_site_count(sites.size());
   OrderedSites result;
   result.scale = scale_for(sites, check(sites, threads, stage.part(0, 0.1)));
   const LargeArray<Placed> items = curve_order(sites, threads, stage.part(0.1, 0.7));

@@ -26,8 +26,11 @@ struct OrderedSites {
   Index site_of(std::size_t index) const { return original[rank_of[index]]; }
 };
 
-/// `threads`: 0: all cores. \throw InputError for a coordinate that is not finite, and for coordinates of too different
-/// size. O(n log n).
+/// Refuses more sites than there are numbers of 32 bits for the half-edges of their triangles. \throw InputError
+void check_site_count(std::size_t count);
+
+/// `threads`: 0: all cores. \throw InputError for too many sites, a coordinate that is not finite, and for coordinates
+/// of too different size. O(n log n).
 OrderedSites order_sites(std::span<const Vec2> sites, int threads, const JobStage& stage);
 
 /// Returns by index: the smallest index of an equal site.
