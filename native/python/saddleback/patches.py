@@ -6,6 +6,7 @@ import math
 import sys
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,7 @@ from saddleback.metrics import anisotropic_metric
 
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.integer]
+_How = dict[str, Any]  # threads and job of a projection
 
 # Cells are at most so many times as long as wide: longer ones are no fewer, and bend around ends.
 _LONGEST = 8.0
@@ -141,13 +143,14 @@ def super_patches(
     done = 0.2
     while True:
         polygons, split = barred.polygons(cells, bend=bend, tolerance=limit / 2)
-        errors = _known_errors(mesh, polygons, split, limit, known)
+        how = {"threads": threads, "job": job.part(done, done)}
+        errors = _known_errors(mesh, polygons, split, limit, known, how)
         errors[polygons.missing] = math.inf
         bad: _Indices = np.flatnonzero(errors > limit)
         job.update(done)
         ahead = done + _ROUND * (1 - done)
         if not len(bad):  # each cell had its error when the polygons beside it were perhaps others
-            patches, errors = _measured(mesh, polygons, split, edges)
+            patches, errors = _measured(mesh, polygons, split, edges, how)
             bad = np.flatnonzero(errors > limit)
         if error is not None and not len(bad):
             bad = _beyond(mesh, patches, error, threads, job.part(done, ahead))
@@ -225,10 +228,12 @@ class _Distances:
         return np.maximum(self.corner, self.deviation / (1 - _SLACK))
 
 
-def _measured(mesh: Mesh, polygons: CellPolygons, split: SplitMesh, edges: _Indices) -> tuple[SuperPatches, _Floats]:
+def _measured(
+    mesh: Mesh, polygons: CellPolygons, split: SplitMesh, edges: _Indices, how: _How
+) -> tuple[SuperPatches, _Floats]:
     """The patches, and the error of each cell."""
     count = int(split.triangle_cell.max()) + 1
-    of = _distances(mesh, polygons, split, np.ones(count, dtype=bool))
+    of = _distances(mesh, polygons, split, np.ones(count, dtype=bool), how)
     kept = polygons.polygon_cell
     patch = np.full(count, -1, dtype=np.int32)
     patch[kept] = np.arange(len(kept))
@@ -249,7 +254,7 @@ def _measured(mesh: Mesh, polygons: CellPolygons, split: SplitMesh, edges: _Indi
 
 
 def _known_errors(
-    mesh: Mesh, polygons: CellPolygons, split: SplitMesh, limit: float, known: dict[bytes, float]
+    mesh: Mesh, polygons: CellPolygons, split: SplitMesh, limit: float, known: dict[bytes, float], how: _How
 ) -> _Floats:
     """The error of each cell; of one that was good in an earlier round, and is as it was, what it was then."""
     count = int(split.triangle_cell.max()) + 1
@@ -259,7 +264,7 @@ def _known_errors(
         hashlib.sha256(region.tobytes() + loop.tobytes()).digest() for region, loop in zip(regions, loops, strict=True)
     ]
     is_new = np.array([key not in known for key in keys])
-    errors = _distances(mesh, polygons, split, is_new).errors
+    errors = _distances(mesh, polygons, split, is_new, how).errors
     known.update((keys[i], float(errors[i])) for i in np.flatnonzero(is_new & (errors <= limit)))
     return np.where(is_new, errors, [known.get(key, 0.0) for key in keys])
 
@@ -274,7 +279,9 @@ def _by_owner(values: _Floats, owner: _Indices, count: int) -> list[_Floats]:
     return np.split(values[order], np.searchsorted(owner[order], np.arange(1, count)))
 
 
-def _distances(mesh: Mesh, polygons: CellPolygons, split: SplitMesh, chosen: NDArray[np.bool_]) -> _Distances:
+def _distances(
+    mesh: Mesh, polygons: CellPolygons, split: SplitMesh, chosen: NDArray[np.bool_], how: _How
+) -> _Distances:
     """Those of the chosen cells, 0 of the others."""
     count = len(chosen)
     within = chosen[split.triangle_cell]
@@ -296,18 +303,18 @@ def _distances(mesh: Mesh, polygons: CellPolygons, split: SplitMesh, chosen: NDA
     if len(triangles):
         soup, _ = _soup(polygons.vertices, triangles)
         points, where = np.unique(region, return_inverse=True)
-        off = _off(soup, split.vertices[points])[where.reshape(-1, 3)]
+        off = _off(soup, split.vertices[points], how)[where.reshape(-1, 3)]
         np.maximum.at(deviation, cell, off.max(axis=1))
         within = chosen[triangle_cell]
         samples = np.einsum("sk,tkj->stj", _LATTICE, polygons.vertices[triangles[within]])
-        off = _off(mesh, samples.reshape(-1, 3)).reshape(len(_LATTICE), -1)
+        off = _off(mesh, samples.reshape(-1, 3), how).reshape(len(_LATTICE), -1)
         np.maximum.at(deviation, triangle_cell[within], off.max(axis=0))
     return _Distances(centers, normals, corner_distance, region_distance, deviation)
 
 
-def _off(surface: Mesh, points: _Floats) -> _Floats:
+def _off(surface: Mesh, points: _Floats, how: _How) -> _Floats:
     """How far points are from a surface."""
-    distance: _Floats = np.linalg.norm(project(surface, points).positions(surface) - points, axis=1)
+    distance: _Floats = np.linalg.norm(project(surface, points, **how).positions(surface) - points, axis=1)
     return distance
 
 

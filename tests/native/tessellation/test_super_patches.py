@@ -6,12 +6,14 @@ from __future__ import annotations
 import threading
 import time
 from collections import Counter
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import saddleback as sb
+from saddleback import patches
 from tests import meshes
 
 
@@ -238,6 +240,20 @@ def test_a_cancelled_job_is_heard() -> None:
     job.cancel()
     with pytest.raises(sb.Cancelled):
         sb.super_patches(SOLIDS["sphere"], error=0.01, job=job)
+
+
+def test_projections_are_watched_and_take_the_threads_that_they_are_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a large mesh they take seconds between two relaxations."""
+    asked: list[dict[str, object]] = []
+
+    def project(*arguments: Any, **how: Any) -> sb.SurfacePoints:
+        asked.append(how)
+        return sb.project(*arguments, **how)
+
+    monkeypatch.setattr(patches, "project", project)
+    sb.super_patches(sb.Mesh(*meshes.icosphere(3)), error=0.2, threads=1, job=sb.Job())
+    measuring = [how for how in asked if how]
+    assert measuring and all(how["threads"] == 1 and isinstance(how["job"], sb.Job) for how in measuring)
 
 
 def test_the_job_never_goes_back_and_ends_at_1() -> None:
