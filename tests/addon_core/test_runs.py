@@ -12,6 +12,7 @@ import saddleback as sb
 from saddleback_blender.core import runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
+from saddleback_blender.core.graphs import mesh_of_surface
 from saddleback_blender.core.requests import DistanceRequest, Surface, TessellateRequest
 from saddleback_blender.core.settings import DistanceSettings, TessellateSettings
 
@@ -31,6 +32,19 @@ def area(vertices, triangles):
 @pytest.fixture
 def cache():
     return Cache(2**30)
+
+
+def test_checking_a_mesh_is_watched(monkeypatch, cache):
+    """It takes seconds where there are millions of faces."""
+    mesh, jobs = sb.Mesh, []
+
+    def checked(*arrays, job=None):
+        jobs.append(job)
+        return mesh(*arrays, job=job)
+
+    monkeypatch.setattr(sb, "Mesh", checked)
+    mesh_of_surface(shapes.grid(4), runs.new_progress(), cache)
+    assert [job.fraction for job in jobs] == [1.0]
 
 
 def test_cells_of_a_surface_with_loose_vertices(cache):

@@ -50,8 +50,8 @@ def mesh_of_surface(surface: Surface, progress: Progress, cache: Cache) -> Any:
     """The library's mesh, checked."""
 
     def build() -> Any:
-        with progress.stage(0.05, "checking the mesh"):
-            return native.load().Mesh(surface.vertices, surface.triangles)
+        with progress.stage(0.05, "checking the mesh") as job:
+            return native.load().Mesh(surface.vertices, surface.triangles, job=job)
 
     size = surface.vertices.nbytes + surface.triangles.nbytes
     size += MESH_BYTES_PER_VERTEX * len(surface.vertices) + MESH_BYTES_PER_FACE * len(surface.triangles)
