@@ -161,6 +161,10 @@ def test_walls_and_volume_are_told_and_painted_and_the_shell_is_saved_for_a_prin
     assert path.is_file() and not path.is_symlink() and link.is_symlink() == (link != path)
     mirrored = np.frombuffer(path.read_bytes()[84:], facets.dtype)["corners"].astype(float)
     assert volume(mirrored.reshape(-1, 3), np.arange(3 * len(mirrored)).reshape(-1, 3)) > 0
+    item.modifiers.new("Array", "ARRAY").count = 2
+    item.hide_viewport = True  # whose modifiers Blender does not evaluate
+    assert bpy.ops.saddleback.export_stl(filepath=str(path)) == {"FINISHED"}
+    assert path.stat().st_size == 84 + 2 * 50 * len(triangles)
     with pytest.raises(RuntimeError, match="cannot be saved"):
         bpy.ops.saddleback.export_stl(filepath=str(tmp_path / "none" / "lamp.stl"))
     bpy.ops.saddleback.tessellate(**{**QUICK, "make_shell": False})

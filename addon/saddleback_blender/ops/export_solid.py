@@ -12,7 +12,7 @@ import numpy as np
 from bpy.props import StringProperty
 
 from .. import compat
-from ..bridge.inputs.mesh_in import read_triangles
+from ..bridge.inputs.mesh_in import modified, read_triangles
 from ..bridge.inputs.source import active_object
 from ..bridge.outputs.out_collection import find_output
 from ..bridge.outputs.out_shell import SHELL_ROLE
@@ -98,12 +98,13 @@ class SADDLEBACK_OT_export_3mf(ExportOperator, bpy.types.Operator):
 
 
 def _solid(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, Indices]:
-    """Points (n, 3) in millimeters and triangles of an object as it is seen."""
-    shown = item.evaluated_get(context.evaluated_depsgraph_get())
-    mesh = shown.to_mesh()
-    places, triangles = compat.read_positions(mesh), read_triangles(mesh).copy()
-    shown.to_mesh_clear()
-    world = np.array(item.matrix_world)
+    """Points (n, 3) in millimeters and triangles of an object with its modifiers, also where it is hidden."""
+    with modified(context, item) as (shown, mesh):
+        places, triangles, world = (
+            compat.read_positions(mesh),
+            read_triangles(mesh).copy(),
+            np.array(shown.matrix_world),
+        )
     if np.linalg.det(world[:3, :3]) < 0:  # mirrored: the outside stays outside
         triangles = triangles[:, ::-1]
     return (places @ world[:3, :3].T + world[:3, 3]) / millimeter(compat.unit_scale(context.scene)), triangles
