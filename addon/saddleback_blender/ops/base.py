@@ -12,6 +12,7 @@ from typing import Any
 import bpy
 
 from .. import compat, jobs, rollback
+from ..blocks import find, name_of
 from ..bridge.inputs.mesh_in import read_surface
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
 from ..bridge.outputs import hand_edits
@@ -373,11 +374,12 @@ def _selected(context: bpy.types.Context) -> list[str]:
     """Names of selected mesh objects but for the active one and what was made of objects."""
     active = active_object(context)
     chosen = [item for item in context.view_layer.objects if item.select_get(view_layer=context.view_layer)]
-    return [item.name for item in chosen if item.type == "MESH" and item != active and SOURCE not in item]
+    others = [item for item in chosen if item.type == "MESH" and item != active and SOURCE not in item]
+    return [name_of(bpy.data.objects, item) for item in others]
 
 
 def _active(context: bpy.types.Context, name: str) -> Any:
-    item = bpy.data.objects.get(name)
+    item = find(bpy.data.objects, name)
     return context.temp_override(object=item, active_object=item)
 
 

@@ -40,6 +40,23 @@ def test_all_selected_objects_get_what_the_active_one_does():
     assert len(bpy.data.objects) == 6
 
 
+def test_an_object_is_not_taken_for_a_selected_one_of_another_file_with_its_name(tmp_path, capfd):
+    balls(1)
+    path = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    (own,) = balls(1)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.objects = ["Ball 0"]
+    bpy.context.scene.collection.objects.link(wanted.objects[0])
+    other = sphere("Other")
+    own.select_set(False)
+    wanted.objects[0].select_set(True)
+    assert bpy.ops.saddleback.tessellate(count=20, all_selected=True, **QUICK) == {"FINISHED"}
+    assert outputs_of(other) and not outputs_of(own)
+    assert "'Ball 0' is linked from" in capfd.readouterr().out
+
+
 def test_only_the_active_object_gets_it_without_being_asked():
     items = balls()
     bpy.ops.saddleback.tessellate(count=20, **QUICK)
