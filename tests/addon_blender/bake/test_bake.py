@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cells as images: what pixels say, depths, tiles, files, and what is refused."""
 
+import os
 import re
 import tempfile
 
@@ -210,6 +211,25 @@ def test_files_lie_in_the_folder(tmp_path, bits):
     bpy.ops.saddleback.bake(resolution=32, bits=bits, folder=str(tmp_path), bake_cell=False, use_tiles=True)
     names = {path.name for path in tmp_path.iterdir()}
     assert {name.split(".")[-2] for name in names if name.count(".") == 2} == {"1001", "1002"}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links")
+def test_a_link_in_the_place_of_a_file_stays_one(tmp_path):
+    plate()
+    bpy.ops.saddleback.tessellate(count=4, **QUICK)
+    there, elsewhere = tmp_path / "there", tmp_path / "elsewhere"
+    there.mkdir()
+    elsewhere.mkdir()
+    how = {"resolution": 16, "folder": str(there), "bake_cell": False, "bake_height": False}
+    bpy.ops.saddleback.bake(**how)
+    (link,) = there.iterdir()
+    kept = link.rename(elsewhere / link.name)
+    before = kept.read_bytes()
+    link.symlink_to(kept)
+    bpy.ops.saddleback.tessellate(count=9, **QUICK)
+    bpy.ops.saddleback.bake(**how)
+    assert link.is_symlink() and list(there.iterdir()) == [link] and list(elsewhere.iterdir()) == [kept]
+    assert kept.read_bytes() != before
 
 
 def test_names_of_other_letters_have_room_for_what_the_image_shows():

@@ -71,8 +71,9 @@ def _file_name(name: str, image: BakedImage, tile: int) -> str:
 
 def _copy(source: bpy.types.Object, path: Path, wanted: Path) -> None:
     """Puts a file where it is to be. Windows refuses where another program holds what is there, so what may still fail
-    comes first: a copy of what was there is moved back where anything fails later.
+    comes first: a copy of what was there is moved back where anything fails later. A link stays one.
     """
+    wanted = Path(os.path.realpath(wanted))
     part, former = (wanted.with_name(f".{wanted.name}.{end}") for end in ("part", "former"))
     for extra in (part, former):
         rollback.undo_with(partial(extra.unlink, missing_ok=True))
