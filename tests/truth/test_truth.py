@@ -66,6 +66,14 @@ def test_random_input_meets_the_truths():
         ("cells.cells_of_places", 1000000000718),
         ("cells.cells_of_places", 1000000000741),  # in line along the border, on a flat grid
         ("cells.cells_of_places", 1000000044051),  # behind a site at a vertex, as if its ways bent there
+        ("cells.cells_of_places", 1000071035246),  # a corner behind a hole, laid flat as if nothing were between
+        ("cells.cells_of_places", 1000031020836),
+        ("cells.cells_of_places", 1000071078380),  # corners told too far: nodes of other cells are on the way
+        ("cells.cells_of_places", 1000000134431),
+        ("cells.cells_of_places", 1000000080266),
+        ("cells.cells_of_places", 1000031028316),
+        ("cells.cells_of_places", 1000000141187),  # the node on the way is as near to a site of a smaller number
+        ("cells.cells_of_places", 1000020321672),
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
         ("cell_parts.polygons_beside_barriers", 20406904),  # a corner on the point of a barrier that was tried

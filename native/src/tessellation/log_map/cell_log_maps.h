@@ -46,7 +46,7 @@ enum class CellLengths { of_ways, smooth };
 ///   5. after an arc    after the cell's vertex before on the shortest way: a direction where 3 and 4 have none, and
 ///                      the length, unless the straight one is known
 ///   6. after a seen    the same after a vertex that the site sees, where the cell has hardly a vertex beside it
-/// By 3 to 6 no farther than the way in the graph, over vertices of any label (WaysOfSites), where that shows.
+/// By 3 to 6 as far as the graph's way over vertices of any label, where that over the cell's does not fit the place.
 /// Each of them is taken in tests/native/tessellation; the seventh in test_cells_of_few_sites.py, on edges of 1e-17.
 /// What is left, corners of long faces that cells without vertices cross, is extrapolated (ExtrapolatedCorners).
 class CellLogMaps {

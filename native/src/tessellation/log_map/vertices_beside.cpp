@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace saddleback {
@@ -11,14 +12,12 @@ VerticesBeside::VerticesBeside(CellLogMaps& maps)
       labels_(maps.labels()),
       arcs_(maps.graph().arcs()),
       placer_(maps),
-      ways_(maps),
       beside_(k_beside),
       table_(maps.graph().mesh().vertex_count()) {}
 
 void VerticesBeside::forget() {
   site_ = k_none;
   ++age_;
-  ways_.forget();
 }
 
 void VerticesBeside::place_cell(Index site) {
@@ -102,19 +101,63 @@ bool VerticesBeside::has_shorter_way(Index node, Index site, double straight) co
 
 /// Places a node next to vertices of the site's own cell, if it has any. A node across or beside an edge of theirs has
 /// an arc to one of them: edges of the mesh are arcs. Corners of long faces may lie far outside the cell, and the ways
-/// over its vertices lead there the long way round: longer than the place is away, other ways are looked for.
+/// over its vertices lead there the long way round, or what lies between bends the surface unseen: where the way is not
+/// as long as the place is away, the graph decides. What is seen across an edge is no nearer than it is seen, though
+/// round a corner there be a shorter way: that is not how the site sees the faces beside its cell.
 bool VerticesBeside::place_by_cell(Index node, Index site, VertexPlace& place) {
-  constexpr double k_far = 1.5;     // as far as the node is from its own site
-  constexpr double k_detour = 1.1;  // as long as the way would be, did it lead straight to the place
   if (labels_.nodes(site).empty()) return false;
   const bool is_seen = place_across_own(node, site, place) || place_across(node, site, true, place);
   const double straight = is_seen ? place.distance : std::numeric_limits<double>::infinity();
-  if (!place_by_arc(node, site, is_seen, place)) return false;
+  const std::optional<double> way = place_by_arc(node, site, is_seen, place);
+  if (!way) return false;
   place.distance = std::min(place.distance, straight);
-  if (!maps_.is_smooth() && place.distance > k_far * labels_.distance(node) &&
-      place.distance > k_detour * (maps_.anchor_distance(place) + place.at.norm()))
-    place.distance = std::min(place.distance, ways_.find(site, node).norm());
+  const double in_plane = maps_.anchor_distance(place) + place.at.norm();
+  if (maps_.is_smooth() || std::abs(*way - in_plane) <= maps_.slack() * in_plane) return true;
+  const double share = 1 - maps_.slack();  // of its length in the graph that a way may have where it is straight
+  const double in_graph = shorter_way(node, site, share * *way).value_or(*way);
+  place.distance = is_seen ? std::min(place.distance, std::max(in_graph, in_plane))
+                           : std::clamp(place.distance, share * in_graph, in_graph);
   return true;
+}
+
+/// Finds the shortest way in the graph, over vertices of any label, if it is shorter than so much. It is looked for
+/// from the node back to what the site owns or sees, where it is shortest at best first: no vertex is nearer to the
+/// site than to that of its label, nor than the bird flies.
+std::optional<double> VerticesBeside::shorter_way(Index node, Index site, double than) {
+  const Mesh& mesh = maps_.graph().mesh();
+  const SeenVertices& seen_vertices = maps_.seen().of(site);
+  const Vec3 center = position(mesh, labels_.sites()[site]);
+  const double share = 1 - maps_.slack();  // what is placed may be nearer than its label's distance in the graph
+  double shortest = than;
+  steps_.clear();
+  reached_.clear();
+  const auto push = [&](Index other, double back) {
+    const double bird = mesh.bird((mesh.positions()[maps_.graph().vertex_of(other)] - center).norm());
+    const Step step{back + std::max(bird, share * labels_.distance(other)), back, other};
+    if (step.at_best >= shortest) return;
+    const auto [known_back, is_new] = reached_.try_emplace(other, back);
+    if (!is_new && known_back->second <= back) return;
+    known_back->second = back;
+    steps_.push_back(step);
+    std::ranges::push_heap(steps_, std::greater<>());
+  };
+  push(node, 0);
+  while (!steps_.empty() && steps_.front().at_best < shortest) {
+    std::ranges::pop_heap(steps_, std::greater<>());
+    const Step step = steps_.back();
+    steps_.pop_back();
+    if (step.back > reached_.at(step.node)) continue;
+    if (labels_.label(step.node) == site || step.node == seen_vertices.center) {
+      const double rest = step.node == seen_vertices.center ? 0 : maps_.place(step.node).distance;
+      shortest = std::min(shortest, step.back + rest);
+      continue;
+    }
+    if (const Index seen = find_seen(site, step.node); seen != k_none)
+      shortest = std::min(shortest, step.back + seen_vertices.places[seen].norm());
+    for (std::int64_t arc = arcs_.first(step.node); arc < arcs_.first(step.node + 1); ++arc)
+      push(arcs_.target(arc), step.back + arcs_.length(arc));
+  }
+  return shortest < than ? std::optional(shortest) : std::nullopt;
 }
 
 /// Tells where the site sees an end of an edge: a node of its cell or, where `deep`, any that can be placed beside its
@@ -165,8 +208,9 @@ bool VerticesBeside::place_across(Index node, Index site, bool deep, VertexPlace
 }
 
 /// Gives a place the length of the shortest way over a graph neighbor that the site owns or, where it owns hardly one,
-/// sees, and, unless it has one, the direction of that way. False where there is none.
-bool VerticesBeside::place_by_arc(Index node, Index site, bool has_direction, VertexPlace& place) {
+/// sees, and, unless it has one, the direction of that way. Returns the way's length though the place lies flat, and is
+/// nearer; none where there is no way.
+std::optional<double> VerticesBeside::place_by_arc(Index node, Index site, bool has_direction, VertexPlace& place) {
   constexpr int k_enough = 2;
   double shortest = std::numeric_limits<double>::infinity();
   Index before = k_none, seen_before = k_none;
@@ -184,12 +228,12 @@ bool VerticesBeside::place_by_arc(Index node, Index site, bool has_direction, Ve
     const double distance = maps_.seen().of(site).places[seen].norm() + arcs_.length(arc);
     if (distance < shortest) shortest = distance, seen_before = seen;
   }
-  if (shortest == std::numeric_limits<double>::infinity()) return false;
+  if (shortest == std::numeric_limits<double>::infinity()) return {};
   if (!has_direction)
     place = before != k_none ? placer_.place_after(node, before) : place_after_seen(node, site, seen_before);
   place.distance = shortest;
   if (lies_flat(node, site, place, count < k_enough)) place.distance = maps_.anchor_distance(place) + place.at.norm();
-  return true;
+  return shortest;
 }
 
 /// Places a node where a way over another that the site sees leads, straight from the site unless it bends there for

@@ -1,10 +1,12 @@
 #pragma once
 // Places vertices beside cells in the planes of their sites.
 
+#include <compare>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "tessellation/log_map/cell_placer.h"
-#include "tessellation/log_map/ways_of_sites.h"
 
 namespace saddleback {
 
@@ -48,13 +50,21 @@ class VerticesBeside {
     bool found;
     SiteVector vector;
   };
+  /// A step of a search back from a node. Of equals the one with the least number is the first.
+  struct Step {
+    double at_best;  ///< no way over the node is shorter
+    double back;     ///< length of the way to it
+    Index node;
+    auto operator<=>(const Step&) const = default;
+  };
   Index find_seen(Index site, Index node) const;
   bool has_shorter_way(Index node, Index site, double straight) const;
   bool place_by_cell(Index node, Index site, VertexPlace& place);
+  std::optional<double> shorter_way(Index node, Index site, double than);
   bool place_across(Index node, Index site, bool deep, VertexPlace& place);
   bool place_across_own(Index node, Index site, VertexPlace& place);
   const VertexPlace* end_of_edge(Index node, Index site, bool deep, VertexPlace& place);
-  bool place_by_arc(Index node, Index site, bool has_direction, VertexPlace& place);
+  std::optional<double> place_by_arc(Index node, Index site, bool has_direction, VertexPlace& place);
   VertexPlace place_after_seen(Index node, Index site, Index seen);
   bool lies_flat(Index node, Index site, const VertexPlace& place, bool with_seen) const;
 
@@ -63,13 +73,14 @@ class VerticesBeside {
   const SiteLabels& labels_;
   const ArcRows& arcs_;
   CellPlacer placer_;
-  WaysOfSites ways_;
   std::vector<Beside> beside_;
   std::uint32_t age_ = 0;    ///< answers of earlier ones are forgotten
   Index site_ = k_none;      ///< placed last
   std::uint32_t round_ = 0;  ///< counts them
   std::vector<Known> table_;
   std::vector<Answer> answers_;
+  std::vector<Step> steps_;                    ///< a heap
+  std::unordered_map<Index, double> reached_;  ///< by node, the shortest way back so far
 };
 
 }  // namespace saddleback

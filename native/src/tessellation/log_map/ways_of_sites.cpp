@@ -6,7 +6,7 @@ namespace saddleback {
 
 /// Begins a search with what a site sees straight: no longer than it is, and nothing that is hidden.
 WaysOfSites::Search WaysOfSites::begin(Index site) {
-  Search search{{}, std::pmr::unordered_map<Index, Search::Reached>(memory_.get())};
+  Search search{{}, std::pmr::unordered_map<Index, Search::Reached>(&memory_)};
   const auto push = [&](Index node, const PackedVec2& at) {
     search.push({at.norm(), node, at.norm() > 0 ? PackedVec2(at.normalized()) : PackedVec2(1, 0)});
   };

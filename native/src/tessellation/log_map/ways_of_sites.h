@@ -2,7 +2,6 @@
 // Ways in the graph from sites to vertices far outside their cells.
 
 #include <limits>
-#include <memory>
 #include <memory_resource>
 #include <queue>
 #include <unordered_map>
@@ -16,13 +15,7 @@ namespace saddleback {
 class WaysOfSites {
  public:
   /// The maps must outlive it.
-  explicit WaysOfSites(const CellLogMaps& maps)
-      : maps_(maps), memory_(std::make_unique<std::pmr::monotonic_buffer_resource>()) {}
-  /// Forgets all; to be called before other sites are labeled.
-  void forget() {
-    searches_.clear();
-    memory_->release();
-  }
+  explicit WaysOfSites(const CellLogMaps& maps) : maps_(maps) {}
   /// Returns where a node would be if the way to it went on as it begins.
   PackedVec2 find(Index site, Index node);
 
@@ -48,8 +41,8 @@ class WaysOfSites {
   Search begin(Index site);
 
   const CellLogMaps& maps_;
-  std::unique_ptr<std::pmr::monotonic_buffer_resource> memory_;  ///< of the searches
-  std::unordered_map<Index, Search> searches_;                   ///< by site
+  std::pmr::monotonic_buffer_resource memory_;  ///< of the searches
+  std::unordered_map<Index, Search> searches_;  ///< by site
 };
 
 }  // namespace saddleback
