@@ -388,8 +388,7 @@ def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
         return
     kept = {watched.name: watched.scale for watched in live.watched.values() if watched.scale}
     touched = {name_of_input(update.id.original) for update in depsgraph.updates}
-    standing = [watched for watched in live.watched.values() if watched.places is not None and touched & watched.inputs]
-    if not all(map(_stands, standing)):
+    if not all(_stands(item) for item in live.watched.values() if item.places is not None and touched & item.inputs):
         _check_standing()
     changed = [update.id.original for update in depsgraph.updates if not _is_only_moved(update, kept)]
     names, keys = {name_of_input(block) for block in changed}, {_key(block) for block in changed}
@@ -438,6 +437,13 @@ def leave(*_: Any) -> None:
 
 
 @persistent  # type: ignore[untyped-decorator]
+def check(*_: Any) -> None:
+    """Other scripts move vertices from frame to frame, of which no update tells."""
+    if not all(_stands(watched) for watched in live.watched.values() if watched.places is not None):
+        _check_standing()
+
+
+@persistent  # type: ignore[untyped-decorator]
 def follow(*_: Any) -> None:
     """Files and renders get what follows as it is without us."""
     for watched in live.watched.values():
@@ -462,6 +468,7 @@ HANDLERS = {
     "load_pre": leave,
     "load_post": accept,
     "annotation_post": mark_strokes,
+    "frame_change_post": check,
     "save_pre": follow,
     "render_init": follow,
 }

@@ -104,6 +104,22 @@ def test_what_stands_follows_again_where_the_surface_may_move(painted, way):
     assert host_of(edges_of(painted)) == painted
 
 
+def test_what_stands_follows_scripts_that_move_vertices_from_frame_to_frame(painted):
+    edges, before, rest = edges_of(painted), evaluated_positions(edges_of(painted)), positions(painted.data)
+
+    def lift(scene, _depsgraph):
+        compat.write_positions(painted.data, rest + np.float32([0, 0, 0.1 * scene.frame_current]))
+        painted.data.update()
+
+    bpy.app.handlers.frame_change_pre.append(lift)
+    try:
+        for frame in (2, 3):  # a frame later at first
+            bpy.context.scene.frame_set(frame)
+        assert np.abs(evaluated_positions(edges) - before - [0, 0, 0.3]).max() < 1e-4
+    finally:
+        bpy.app.handlers.frame_change_pre.remove(lift)
+
+
 def test_a_file_that_is_saved_follows_without_the_addon(painted, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"), copy=True)
     with bpy.data.libraries.load(str(tmp_path / "a.blend")) as (_, wanted):
