@@ -53,6 +53,7 @@ class Watched:
         self.scale = b""  # of the object, where it is all that is read of its place
         self.places: NDArray[np.float32] | None = None  # (V, 3) of its vertices, while what follows it stands
         self.is_changed = False
+        self.is_refused = False  # could not be read, as while it is hidden
         self.is_accepted = False  # what was made belongs to what it is made from, whatever that is by now
 
 
@@ -309,6 +310,7 @@ def _begin(context: bpy.types.Context, target: Watched) -> None:
             _start(target, operator, call)
             return
     target.is_changed = target.is_accepted = False
+    target.is_refused = bool(kinds and text)
     _let_stand(target)
     _tell(context, target, text)
 
@@ -395,7 +397,10 @@ def mark(_scene: Any, depsgraph: bpy.types.Depsgraph) -> None:
     found = [
         watched
         for key, watched in live.watched.items()
-        if key in keys or names & watched.inputs or any(is_child(block, watched.name) for block in changed)
+        if key in keys
+        or names & watched.inputs
+        or any(is_child(block, watched.name) for block in changed)
+        or (watched.is_refused and depsgraph.id_type_updated("SCENE"))  # of what is shown no other update tells
     ]
     for watched in found:
         watched.is_changed = True
@@ -478,6 +483,8 @@ def register() -> None:
     """Makes everything of this module known to Blender."""
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
+    live.has_news = True  # in a file that is open already
+    wake()
 
 
 def unregister() -> None:

@@ -375,6 +375,26 @@ def test_what_cannot_be_read_is_told_and_changes_nothing(item):
     assert fingerprint() == told
 
 
+def test_a_hidden_object_goes_on_once_it_is_shown(item):
+    before = cells(item)
+    item.hide_set(True)
+    paint(item)
+    steps()
+    assert "hidden" in jobs.state.live["Sphere"] and np.array_equal(cells(item), before)
+    item.hide_set(False)
+    steps()
+    assert jobs.state.live["Sphere"] == "" and not np.array_equal(cells(item), before)
+
+
+def test_it_goes_on_in_an_open_file_whose_addon_is_enabled_again(item):
+    bpy.ops.preferences.addon_disable(module="saddleback_blender")
+    assert not bpy.app.timers.is_registered(live.tick)
+    bpy.ops.preferences.addon_enable(module="saddleback_blender")
+    assert bpy.app.timers.is_registered(live.tick)  # who looks around
+    steps()
+    assert [watched.name for watched in live.live.watched.values()] == ["Sphere"]
+
+
 def test_a_write_that_fails_changes_nothing(item, monkeypatch):
     before = fingerprint()
 
