@@ -182,7 +182,7 @@ def places_in_cells(mesh: sb.Mesh, rng: Random) -> None:
     "geodesic_voronoi",
     "GeodesicVoronoi.cells_at",
     "GeodesicVoronoi.split",
-    unsettled="faces that a site sees by two ways, round a corner, are laid by one, once in 3,000 (1000020291564)",
+    unsettled="faces that a site sees by two ways, round a corner, are laid by one, once in 2,000 (1000020291564)",
 )
 def cells_of_places(mesh: sb.Mesh, rng: Random) -> None:
     """The cell in which a point within a face lies, by `split` and `cells_at`, is its nearest site's by exact fields,
