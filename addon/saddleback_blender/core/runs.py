@@ -280,12 +280,12 @@ def _solve(
         with nullcontext() if live is None else live.follow(graph) as watch:
             while is_newer:
                 with progress.stage(0.9, "evening out the cells", can_settle=live is not None) as job:
-                    # To be watched from a start that is far from even; else from coarse cells that are even already.
+                    # To be watched from a start that is far from even; else from cells that are even on a coarse mesh.
                     cvt = sb.centroidal_voronoi(
                         graph, density=density, method=settings.method.lower(), max_iterations=iterations,
                         seed=settings.seed, starts=_starts(request), annealing=_annealing(request, iterations),
                         closed_ball=_closed_ball(request, iterations),
-                        start="auto" if live is None else "sample", least_move=0.0 if live is None else UNSEEN,
+                        start="coarse_mesh" if live is None else "sample", least_move=0.0 if live is None else UNSEEN,
                         return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
                     )  # fmt: skip
                 is_newer = live is not None and live.waits_for_density(progress)

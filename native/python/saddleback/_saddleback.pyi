@@ -2694,7 +2694,7 @@ def centroidal_voronoi(
     tolerance: SupportsFloat = 1e-6,
     seed: SupportsIndex = 0,
     *,
-    start: Literal["auto", "coarse_to_fine", "sample"] = "auto",
+    start: Literal["auto", "coarse_to_fine", "coarse_mesh", "sample"] = "auto",
     starts: SupportsIndex = 1,
     annealing: SupportsIndex = 0,
     fixed: ArrayLike | None = None,
@@ -2730,7 +2730,10 @@ def centroidal_voronoi(
     start : str
         Where the sites of `count` come from. "coarse_to_fine": relaxed cells of a quarter of the number, with one more on
         each boundary between two of them, and so on down; few irregular cells remain. "sample": by density and seed. The
-        same without iterations. "auto": from coarse cells when max_iterations is 50 or more.
+        same without iterations. "auto": from coarse cells when max_iterations is 50 or more. "coarse_mesh": from cells
+        relaxed so on a mesh of 20 vertices for each (10,000 at least), where the mesh has five times as many vertices, no
+        lengths of its own and no site is fixed: a tenth of max_iterations, 5 at least, is then made, and counted, on the
+        mesh itself. As even cells, of a million vertices in a fourth of the time.
     starts : int
         With `count`: so many relaxations, by the seeds from `seed` on. The one with the least energy is the result: where a
         relaxation ends depends on where it began.

@@ -145,18 +145,6 @@ SurfacePoint at_vertex_within(const Mesh& mesh, const SurfacePoint& point, doubl
   return point;
 }
 
-/// A vector in space, as the face's plane has it, in the face's chart. Zero where the face has no plane.
-Vec2 in_chart(const Mesh& mesh, Index face, const Vec3& vector) {
-  const Triangle& t = mesh.triangles()[face];
-  const Vec3 a = mesh.positions()[t[1]] - mesh.positions()[t[0]], b = mesh.positions()[t[2]] - mesh.positions()[t[0]];
-  const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm(), va = vector.dot(a), vb = vector.dot(b);
-  const double determinant = aa * bb - ab * ab;
-  if (!(determinant > 0)) return Vec2::Zero();
-  const double along_a = (va * bb - vb * ab) / determinant, along_b = (vb * aa - va * ab) / determinant;
-  const FaceChart chart(mesh, face);
-  return along_a * (chart.corner[1] - chart.corner[0]) + along_b * (chart.corner[2] - chart.corner[0]);
-}
-
 /// Returns where the search for the center begins: as far from the site as the cell's mean in space is, which mostly
 /// makes a map of the cell unnecessary; the site if that place is not in the cell.
 SurfacePoint first_place(const Mesh& mesh, const CellMass& cell, const SurfacePoint& site, double size) {

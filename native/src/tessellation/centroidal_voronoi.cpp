@@ -132,21 +132,6 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
   }
 }
 
-CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
-  constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
-  constexpr int k_long_run = 50;
-  if (!options.constraints.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
-  using From = RelaxationStart::From;
-  const bool coarse = options.start.from == From::automatic ? options.stop.max_iterations >= k_long_run
-                                                            : options.start.from == From::coarse_to_fine;
-  if (!coarse || options.stop.max_iterations == 0) {
-    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
-  }
-  return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
-                     stage.part(k_start, 1));
-}
-
 /// Has fewer faults, where those are looked for, or as many and less energy.
 bool is_better(const CentroidalVoronoi& one, const CentroidalVoronoi& other) {
   if (one.issues.size() != other.issues.size()) return one.issues.size() < other.issues.size();
@@ -247,6 +232,30 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   return relax_and_show(graph, options, job, [&](const CentroidalVoronoiOptions& scaled, const JobStage& stage) {
     return best_of_starts(graph, count, scaled, stage);
   });
+}
+
+CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
+  constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
+  constexpr int k_long_run = 50;
+  constexpr int k_last_iterations = 5, k_last_share = 10;  // on the mesh itself, after those on a coarse one
+  if (!options.constraints.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
+  using From = RelaxationStart::From;
+  if (options.start.from == From::coarse_mesh && options.stop.max_iterations > k_last_iterations) {
+    if (const auto sites = coarse_mesh_sites(graph, count, options, seed, stage.part(0, k_start))) {
+      CentroidalVoronoiOptions last = options;
+      last.start.annealing = 0;
+      last.stop.max_iterations = std::max(k_last_iterations, options.stop.max_iterations / k_last_share);
+      return relax_sites(graph, *sites, last, stage.part(k_start, 1));
+    }
+  }
+  const bool coarse = options.start.from == From::coarse_to_fine ||
+                      (options.start.from != From::sample && options.stop.max_iterations >= k_long_run);
+  if (!coarse || options.stop.max_iterations == 0) {
+    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
+  }
+  return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
+                     stage.part(k_start, 1));
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,

@@ -357,7 +357,7 @@ def test_progress_rises_and_cancel_is_quick() -> None:
         ({"count": 2, "fixed": [-1]}, "fixed"),
         ({"count": 2, "annealing": -1}, "annealing: wanted 0 or more, got -1"),
         ({"count": 2, "annealing": 0.5}, "annealing"),
-        ({"count": 2, "start": "guess"}, "start: wanted 'auto', 'coarse_to_fine' or 'sample', got 'guess'"),
+        ({"count": 2, "start": "guess"}, "start: wanted 'auto', 'coarse_to_fine', 'coarse_mesh' or 'sample', got 'guess'"),
     ],
 )
 def test_bad_arguments(arguments: dict[str, object], words: str) -> None:
@@ -383,6 +383,31 @@ def test_of_several_starts_the_one_with_the_least_energy() -> None:
     ):
         with pytest.raises(sb.InputError, match=words):
             sb.centroidal_voronoi(graph, **arguments)
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_cells_of_a_fine_mesh_begin_on_a_coarse_one(closed: bool) -> None:
+    """As even as by as many iterations on the mesh itself, of which a tenth are made there; a start of its own."""
+    mesh = sb.Mesh(*(meshes.torus(400, 140) if closed else meshes.grid(240, 240, jitter=0.3)))
+    graph = sb.SaddleVertexGraph(mesh)
+    density = 1 + 3 * (mesh.vertices[:, 0] > mesh.vertices[:, 0].mean())
+    options = {"count": 200, "density": density, "max_iterations": 40}
+    one, two = (sb.centroidal_voronoi(graph, start="coarse_mesh", threads=t, **options) for t in (1, 2))
+    np.testing.assert_array_equal(one.sites.barycentric, two.sites.barycentric)
+    assert one.iterations == 5 and len(one.energy) == 6 and len(one.sites) == 200
+    sampled = sb.centroidal_voronoi(graph, start="sample", **options)
+    assert one.normalized_energy < 1.005 * sampled.normalized_energy
+    assert one.energy[0] < 0.95 * sampled.energy[0]
+    assert (one.cells.areas > 0.2 * sampled.cells.areas.min()).all()
+    check_progress_and_cancel(
+        lambda job: sb.centroidal_voronoi(graph, count=200, max_iterations=1000, start="coarse_mesh", job=job), 0.005
+    )
+
+
+def test_a_mesh_that_is_not_much_finer_is_its_own_start() -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.icosphere(4)))
+    found, usual = (sb.centroidal_voronoi(graph, count=40, max_iterations=8, start=s) for s in ("coarse_mesh", "auto"))
+    np.testing.assert_array_equal(found.sites.barycentric, usual.sites.barycentric)
 
 
 def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:

@@ -19,7 +19,10 @@ struct RelaxationStart {
   /// Says where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site
   /// more on each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or
   /// meet twice), or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
-  enum class From { automatic, coarse_to_fine, sample };
+  /// Or from cells relaxed on a mesh of 20 vertices for each (10,000 at least), the cells of whose samples are found
+  /// once: where the mesh has five times as many. Of max_iterations a tenth, 5 at least, are then made on the mesh
+  /// itself; else as automatic.
+  enum class From { automatic, coarse_to_fine, coarse_mesh, sample };
   From from = From::automatic;
   std::uint64_t seed = 0;  ///< of the sample
   /// Counts relaxations, only for a number of cells: so many relaxations, by the seeds from the given one on, of which

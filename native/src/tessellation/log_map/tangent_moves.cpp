@@ -40,6 +40,17 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
 
 }  // namespace
 
+Vec2 in_chart(const Mesh& mesh, Index face, const Vec3& vector) {
+  const Triangle& t = mesh.triangles()[face];
+  const Vec3 a = mesh.positions()[t[1]] - mesh.positions()[t[0]], b = mesh.positions()[t[2]] - mesh.positions()[t[0]];
+  const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm(), va = vector.dot(a), vb = vector.dot(b);
+  const double determinant = aa * bb - ab * ab;
+  if (!(determinant > 0)) return Vec2::Zero();
+  const double along_a = (va * bb - vb * ab) / determinant, along_b = (vb * aa - va * ab) / determinant;
+  const FaceChart chart(mesh, face);
+  return along_a * (chart.corner[1] - chart.corner[0]) + along_b * (chart.corner[2] - chart.corner[0]);
+}
+
 double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle) {
   return angle_about(mesh, point, chart_angle) / surface_scale(mesh, point);
 }

@@ -25,6 +25,9 @@ struct Moved {
 Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads,
                  std::span<const Index> order = {});
 
+/// A vector in space, as the face's plane has it, in the face's chart. Zero where the face has no plane.
+Vec2 in_chart(const Mesh& mesh, Index face, const Vec3& vector);
+
 /// A direction given in the chart of the point's face as an angle of the point's tangent plane.
 double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle);
 

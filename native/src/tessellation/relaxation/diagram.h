@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "saddleback/tessellation/centroidal_voronoi.h"
 
 #include "tessellation/cells/face_candidates.h"
@@ -39,5 +41,16 @@ GeodesicVoronoi relaxed_cells(const SaddleVertexGraph& graph, const SurfacePoint
 /// Cancelled.
 SurfacePoints coarse_to_fine_sites(const SaddleVertexGraph& graph, Index count, const CentroidalVoronoiOptions& options,
                                    std::uint64_t seed, const JobStage& stage);
+
+/// centroidal_voronoi of a number of cells as a part of other work, from one start; see relax_sites.
+CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage);
+
+/// A start for `count` cells from cells relaxed on a mesh of fewer vertices. None where the graph's mesh is not much
+/// finer than that, has lengths of its own, or parts too thin for it, and where sites are fixed. \throw as
+/// initial_sites; Cancelled.
+std::optional<SurfacePoints> coarse_mesh_sites(const SaddleVertexGraph& graph, Index count,
+                                               const CentroidalVoronoiOptions& options, std::uint64_t seed,
+                                               const JobStage& stage);
 
 }  // namespace saddleback
