@@ -409,6 +409,7 @@ def calls(at: Inputs) -> dict[str, Call]:
         "sample": lambda: sb.sample(at.mesh, 20_000),
         "self_crossings": lambda **more: sb.self_crossings(at.vertices, at.triangles, **more),
         "show": lambda: if_installed(lambda: sb.show(at.mesh, is_shown=False)),
+        "smoothed_directions": lambda **more: sb.smoothed_directions(at.triangles, at.vertices, 40, **more),
         "spread_values": lambda: sb.spread_values(at.mesh, at.few, at.few.astype(float)),
         "streamline": lambda: sb.streamline(at.mesh, at.field, 3, 20.0),
         "trace": lambda: sb.trace(at.mesh, 0, 0.3, 200.0),

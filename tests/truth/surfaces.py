@@ -92,6 +92,7 @@ def counts_and_areas(mesh: sb.Mesh, rng: Random) -> None:
     "border_edges",
     "vertex_normals",
     "neighbor_means",
+    "smoothed_directions",
     "cell_boundary",
     "cell_boundary_distance",
     "refine_to_cell_boundary",
@@ -118,6 +119,14 @@ def array_functions(mesh: sb.Mesh, rng: Random) -> None:
             beside[corner] += [other for other in corners if other != corner]
     means = [values[others].mean(axis=0) if others else [0.0, 0.0] for others in beside]
     np.testing.assert_allclose(sb.neighbor_means(mesh.triangles, values), means, rtol=1e-9)
+    directions = rng.normal(size=(mesh.vertex_count, 3))
+    turned = np.array(
+        [d / 5 + (directions[o].mean(axis=0) if o else 0) for d, o in zip(directions, beside, strict=True)]
+    )
+    turned /= np.linalg.norm(turned, axis=1)[:, None]
+    np.testing.assert_allclose(sb.smoothed_directions(mesh.triangles, directions, 1), turned, atol=1e-9)
+    twice = sb.smoothed_directions(mesh.triangles, turned, 1)
+    np.testing.assert_allclose(sb.smoothed_directions(mesh.triangles, directions, 2), twice, atol=1e-9)
     cells = rng.integers(0, 3, mesh.face_count).astype(np.int32)
     distance = sb.cell_boundary_distance(mesh.vertices, mesh.triangles, cells)
     assert (distance >= 0).all()

@@ -40,6 +40,17 @@ py::array means(const py::object& triangles, const py::object& values) {
       .reshape(std::vector<py::ssize_t>{-1, width});
 }
 
+py::array smoothed(const py::object& triangles, const py::object& directions, const py::object& rounds,
+                   const py::object& job) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const ArrayIn<double> xyz = as_points3(directions, "directions");
+  const int count = as_integer(rounds, "rounds");
+  const JobIn token(job);
+  return to_array(without_gil([&] {
+    return smoothed_directions(points_of(xyz), triangles_of(indices), count, JobStage(token, "Smoothing directions"));
+  }));
+}
+
 py::tuple edges_of(const py::object& triangles, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const Index count = as_vertex_count(vertex_count);
@@ -155,6 +166,29 @@ Returns
 -------
 (V, k) float64
     A neighbor on two of the triangles counts twice; zero where no triangle is. O(V k + T k).)");
+  m.def("smoothed_directions", &smoothed, py::arg("triangles"), py::arg("directions"), py::arg("rounds"), py::kw_only(),
+        py::arg("job") = py::none(),
+        R"(Turn directions of vertices towards those of their neighbors, round after round.
+
+Parameters
+----------
+triangles : (T, 3) int array
+directions : (V, 3) float array
+    Unit vectors, such as normals.
+rounds : int
+    In each, a direction becomes that of the mean of its neighbors' (see neighbor_means) and a fifth of itself.
+job : Job, optional
+
+Returns
+-------
+(V, 3) float64
+    Unit vectors; as given where those around cancel out. O(rounds T).
+
+Raises
+------
+InputError
+    Fewer than 0 rounds; a corner out of range.
+Cancelled)");
   m.def("triangle_edges", &edges_of, py::arg("triangles"), py::arg("vertex_count"),
         R"(Number the edges of triangles, in the order in which these come upon them, whichever way round.
 

@@ -4014,6 +4014,30 @@ def streamline(
         Cancelled: the job was.
     """
 
+def smoothed_directions(triangles: ArrayLike, directions: ArrayLike, rounds: int, *, job: Job | None = None) -> _Floats:
+    """Turn directions of vertices towards those of their neighbors, round after round.
+
+    Parameters
+    ----------
+    triangles : (T, 3) int array
+    directions : (V, 3) float array
+        Unit vectors, such as normals.
+    rounds : int
+        In each, a direction becomes that of the mean of its neighbors' (see neighbor_means) and a fifth of itself.
+    job : Job, optional
+
+    Returns
+    -------
+    (V, 3) float64
+        Unit vectors; as given where those around cancel out. O(rounds T).
+
+    Raises
+    ------
+    InputError
+        Fewer than 0 rounds; a corner out of range.
+    Cancelled
+    """
+
 def spread_values(
     mesh: Mesh,
     places: _Points,

@@ -62,6 +62,20 @@ def test_means_count_a_neighbor_on_two_triangles_twice() -> None:
         sb.neighbor_means(triangles, np.zeros((5, 0)))
 
 
+def test_directions_turn_towards_their_neighbors() -> None:
+    vertices, triangles = meshes.icosphere(4)
+    rng = np.random.default_rng(0)
+    rough = vertices + 0.5 * rng.normal(size=vertices.shape)
+    rough /= np.linalg.norm(rough, axis=1)[:, None]
+    smooth = sb.smoothed_directions(triangles, rough, 20)
+    assert (smooth * vertices).sum(axis=1).min() > 0.95 > (rough * vertices).sum(axis=1).min()
+    np.testing.assert_array_equal(sb.smoothed_directions(triangles, rough, 0), rough)
+    opposite = np.array([[0.0, 0, 1], [0, 0, 1], [0, 0, -1], [0, 0, -0.2]])
+    np.testing.assert_array_equal(sb.smoothed_directions([[3, 1, 2]], opposite, 1)[0], opposite[0])
+    with pytest.raises(sb.InputError, match="rounds: wanted 0 or more, got -1"):
+        sb.smoothed_directions(triangles, rough, -1)
+
+
 def test_normals_of_a_sphere_point_outwards_and_unused_vertices_have_none() -> None:
     vertices, triangles = synthetic_cells.sphere(4)
     normals = sb.vertex_normals(np.vstack([vertices, [[9.0, 9.0, 9.0]]]), triangles)

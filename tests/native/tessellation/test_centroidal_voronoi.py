@@ -357,7 +357,10 @@ def test_progress_rises_and_cancel_is_quick() -> None:
         ({"count": 2, "fixed": [-1]}, "fixed"),
         ({"count": 2, "annealing": -1}, "annealing: wanted 0 or more, got -1"),
         ({"count": 2, "annealing": 0.5}, "annealing"),
-        ({"count": 2, "start": "guess"}, "start: wanted 'auto', 'coarse_to_fine', 'coarse_mesh' or 'sample', got 'guess'"),
+        (
+            {"count": 2, "start": "guess"},
+            "start: wanted 'auto', 'coarse_to_fine', 'coarse_mesh' or 'sample', got 'guess'",
+        ),
     ],
 )
 def test_bad_arguments(arguments: dict[str, object], words: str) -> None:

@@ -29,11 +29,9 @@ def smooth_directions(
     progress.check()
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
     progress.check()
-    means, smooth = native.load().neighbor_means, normals
-    for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, most))):
-        progress.check()
-        smooth = _unit(0.2 * smooth + means(triangles, smooth), normals)
-    progress.check()
+    rounds = int(np.clip(4 * (thickness / mean_edge) ** 2, 1, most))
+    with progress.stage(progress.fraction, "smoothing directions") as job:
+        smooth: Reals = native.load().smoothed_directions(triangles, normals, rounds, job=job)
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     face = _unit(face, face)

@@ -21,6 +21,12 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const
 /// T k).
 std::vector<double> neighbor_means(std::span<const double> values, Index width, std::span<const Triangle> triangles);
 
+/// Directions (V,) smoothed in so many rounds: each becomes the unit vector along the mean of its neighbors' (as
+/// neighbor_means) and a fifth of itself, or as it was given where those cancel out. \throw Cancelled. O(rounds T), all
+/// cores.
+std::vector<Vec3> smoothed_directions(std::span<const Vec3> directions, std::span<const Triangle> triangles, int rounds,
+                                      const JobStage& stage = {});
+
 struct TriangleEdges {
   std::vector<std::array<Index, 2>> ends;  ///< each edge once
   std::vector<Index> corner_edges;         ///< (3 T,) the edge from each triangle's corner to its next one

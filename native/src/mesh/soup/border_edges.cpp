@@ -6,6 +6,7 @@
 
 #include "mesh/tables/corner_table.h"
 #include "support/disjoint_sets.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 
@@ -42,6 +43,30 @@ std::vector<double> neighbor_means(std::span<const double> values, Index width, 
     if (times[v] > 0)
       for (Index k = 0; k < width; ++k) means[std::size_t(v) * width + k] /= times[v];
   return means;
+}
+
+std::vector<Vec3> smoothed_directions(std::span<const Vec3> directions, std::span<const Triangle> triangles, int rounds,
+                                      const JobStage& stage) {
+  constexpr double k_own = 0.2;
+  constexpr Index k_at_once = 4096;
+  if (rounds < 0) throw InputError(message("rounds: wanted 0 or more, got ", rounds));
+  const CornerTable table(triangles, static_cast<Index>(directions.size()));
+  std::vector<Vec3> smooth(directions.begin(), directions.end()), next(directions.size());
+  for (int round = 0; round < rounds; ++round) {
+    parallel_for(table.vertex_count(), 0, k_at_once, [&](Index v, int) {
+      if (v % k_at_once == 0) stage.check();
+      const std::span<const CornerTable::Corner> corners = table.at(v);
+      Vec3 sum = Vec3::Zero();
+      for (const CornerTable::Corner& corner : corners) sum += smooth[corner.next] + smooth[corner.previous];
+      if (!corners.empty()) sum /= 2.0 * static_cast<double>(corners.size());
+      sum += k_own * smooth[v];
+      const double length = sum.norm();
+      next[v] = length > 0 ? Vec3(sum / length) : directions[v];
+    });
+    smooth.swap(next);
+    stage.update(static_cast<double>(round + 1) / rounds);
+  }
+  return smooth;
 }
 
 std::vector<Index> connected_parts(std::span<const Triangle> triangles, Index vertex_count) {
