@@ -18,12 +18,16 @@ struct MappedShapes {
   Placements placements;
   MapLimits limits;
   std::vector<MappedShape> mapped;
-  std::vector<Vec3> normals;
-  std::mutex mutex;  ///< of the conformer
+  mutable std::mutex normals_mutex;
+  mutable std::vector<Vec3> found_normals;  ///< empty until somebody asks
+  std::mutex mutex;                         ///< of the conformer
   std::unique_ptr<Conformer> conformer;
 
   const Mesh& mesh() const;
   std::vector<const DirectionField*> fields() const { return as_fields(field_object); }
+  /// The vertex normals of the mesh, which is given as this may be asked without the GIL. \throw InputError for a mesh
+  /// without space.
+  const std::vector<Vec3>& normals(const Mesh& own) const;
   const Shape& shape(Index i) const { return shapes[placements[i].shape]; }
   /// An index, negative from the end. \throw IndexError out of range.
   Index checked(const py::object& index) const;

@@ -143,11 +143,14 @@ std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const p
   result->limits = as_limits(limits);
   const JobIn token(job);
   const MapShapesOptions options{result->limits, result->fields(), as_integer(threads, "threads"), token};
-  without_gil([&] {
-    result->mapped = map_shapes(mesh, result->shapes, result->placements, options);
-    if (!mesh.is_intrinsic()) result->normals = vertex_normals(mesh);  // else whoever needs them is refused
-  });
+  without_gil([&] { result->mapped = map_shapes(mesh, result->shapes, result->placements, options); });
   return result;
+}
+
+const std::vector<Vec3>& MappedShapes::normals(const Mesh& own) const {
+  const std::lock_guard lock(normals_mutex);
+  if (found_normals.empty()) found_normals = vertex_normals(own);
+  return found_normals;
 }
 
 namespace {
@@ -228,7 +231,7 @@ Conformed conform_one(MappedShapes& self, const py::object& vertices, const py::
     if (!self.conformer) self.conformer = std::make_unique<Conformer>(mesh);
     Conformed result;
     result.points = self.conformer->conform(self.shape(i), self.placements[i], field, points, self.limits);
-    result.positions = positions_of(mesh, self.normals, result.points.anchors, result.points.heights);
+    result.positions = positions_of(mesh, self.normals(mesh), result.points.anchors, result.points.heights);
     return result;
   });
 }
@@ -273,11 +276,12 @@ BentMeshes bend_all(const MappedShapes& self, const py::object& solids, const py
   const Mesh& mesh = self.mesh();
   const std::vector<Solid> given = as_solids(solids, self.shapes.size());
   const JobIn token(job);
-  const BendOptions options{{self.limits, self.fields(), as_integer(threads, "threads"), token},
-                            as_real(tolerance, "tolerance")};
+  BendOptions options{
+      {self.limits, self.fields(), as_integer(threads, "threads"), token}, as_real(tolerance, "tolerance"), {}};
   return without_gil([&] {
+    options.normals = self.normals(mesh);
     BentMeshes result{bent_copies(mesh, self.shapes, self.placements, given, options), {}};
-    result.positions = positions_of(mesh, self.normals, result.copies.anchors, result.copies.heights);
+    result.positions = positions_of(mesh, options.normals, result.copies.anchors, result.copies.heights);
     return result;
   });
 }
@@ -325,7 +329,7 @@ py::tuple frames_of(const MappedShapes& self, const py::object& mesh_object) {
   const Mesh& mesh = mesh_object.is_none() ? self.mesh() : as_mesh(mesh_object, "mesh");
   check_placements(mesh, self.shapes.size(), self.placements);
   const std::vector<RigidFrame> frames = without_gil([&] {
-    return mesh_object.is_none() ? rigid_frames(mesh, self.normals, self.placements)
+    return mesh_object.is_none() ? rigid_frames(mesh, self.normals(mesh), self.placements)
                                  : rigid_frames(mesh, vertex_normals(mesh), self.placements);
   });
   std::vector<Vec3> points, scales;

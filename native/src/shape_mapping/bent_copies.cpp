@@ -71,7 +71,8 @@ BentCopies bent_copies(const Mesh& mesh, std::span<const Shape> shapes, std::spa
   const JobStage stage(options.mapping.job, "Bending shapes onto the surface");
   check_mapping(mesh, shapes, placements, options.mapping);
   check(shapes, solids, options);
-  const std::vector<Vec3> normals = vertex_normals(mesh);
+  const std::vector<Vec3> found = options.normals.empty() ? vertex_normals(mesh) : std::vector<Vec3>();
+  const std::span<const Vec3> normals = options.normals.empty() ? std::span<const Vec3>(found) : options.normals;
   std::vector<SolidEdges> edges;
   for (const Solid& solid : solids) edges.emplace_back(solid);
   const auto count = static_cast<Index>(placements.size());

@@ -36,6 +36,7 @@ struct BendOptions {
   /// Says how far edges and faces may leave the surface that their vertices lie on (or stand above), as a share of the
   /// copy's circumradius; 0: solids keep their vertices.
   double tolerance = 0.01;
+  std::span<const Vec3> normals;  ///< (V,) the mesh's `vertex_normals`; empty: they are found
 };
 
 /// Bends the solid of each placement's shape onto the surface, as `conform` does. Between the vertices of a mesh that
