@@ -408,7 +408,15 @@ def test_cells_of_a_fine_mesh_begin_on_a_coarse_one(closed: bool) -> None:
 
 
 def test_a_mesh_that_is_not_much_finer_is_its_own_start() -> None:
-    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.icosphere(4)))
+    """Nor one with a part too small for samples to show it."""
+    whole, small = meshes.icosphere(4), meshes.icosphere(1)
+    fine = meshes.torus(400, 140)
+    speck = np.concatenate([fine[0], 1e-3 * small[0]]), np.concatenate([fine[1], small[1] + len(fine[0])])
+    for arrays in (whole, speck):
+        check_usual_start(sb.SaddleVertexGraph(sb.Mesh(*arrays)))
+
+
+def check_usual_start(graph: sb.SaddleVertexGraph) -> None:
     found, usual = (sb.centroidal_voronoi(graph, count=40, max_iterations=8, start=s) for s in ("coarse_mesh", "auto"))
     np.testing.assert_array_equal(found.sites.barycentric, usual.sites.barycentric)
 

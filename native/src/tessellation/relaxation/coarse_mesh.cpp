@@ -15,6 +15,14 @@ namespace {
 constexpr Index k_least = 10'000, k_for_a_cell = 20;  // vertices of the coarse mesh
 constexpr Index k_worth = 5;                          // times as many vertices: finding the samples' cells takes time
 
+/// Tells whether some part of the mesh has too few of them to have its shape.
+bool is_any_part_poor(const Mesh& mesh, const SurfacePoints& samples) {
+  constexpr Index k_few = 20;
+  std::vector<Index> in_part(mesh.component_count(), 0);
+  for (const SurfacePoint& sample : samples) ++in_part[mesh.component_of(mesh.triangles()[sample.face][0])];
+  return std::ranges::any_of(in_part, [](Index count) { return count < k_few; });
+}
+
 /// The density at points; none where it is uniform.
 std::vector<double> density_at(const Mesh& mesh, const SurfacePoints& points, std::span<const double> density) {
   std::vector<double> values;
@@ -51,6 +59,7 @@ std::optional<SurfacePoints> coarse_mesh_sites(const SaddleVertexGraph& graph, I
   if (mesh.is_intrinsic() || !options.constraints.fixed.empty() || mesh.vertex_count() < k_worth * wanted)
     return std::nullopt;
   const SurfacePoints samples = initial_sites(mesh, static_cast<Index>(wanted), options.density, seed);
+  if (is_any_part_poor(mesh, samples)) return std::nullopt;
   const GeodesicVoronoi cells = find_cells(graph, samples, options.threads, options.cuda_device, stage.part(0, 0.3));
   const DualMesh dual = dual_mesh(mesh, cells);
   if (!dual.issues.empty()) return std::nullopt;  // parts of the surface are too thin for it
