@@ -107,6 +107,9 @@ def test_random_input_meets_the_truths():
         ("ways.maps_of_narrow_bands", 1000000032335),
         ("ways.maps_hold_what_lies_beside", 20270245),  # an edge cut at the radius saw past an end of the curve
         ("ways.maps_hold_what_lies_beside", 20275565),
+        ("ways.maps_of_narrow_bands", 1000010128640),  # places beside an origin far away were rounded
+        ("ways.maps_of_narrow_bands", 1000000161763),
+        ("ways.maps_of_narrow_bands", 1000000086059),
         ("ways.maps_of_narrow_bands", 6),  # slivers of a curve's parts, all halved to the end: no end
         ("ways.maps_of_narrow_bands", 11),
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them

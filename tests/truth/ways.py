@@ -374,6 +374,13 @@ def random_curve(mesh: sb.Mesh, rng: Random) -> sb.SurfaceCurve | None:
     return sb.SurfaceCurve(mesh, sb.SurfacePoints(faces, weights), closed=closed)
 
 
+def places_about(mesh: sb.Mesh, points: sb.SurfacePoints) -> Floats:
+    """Places of points beside the first vertex: those beside a far origin are rounded to more than a narrow radius."""
+    corners = (mesh.vertices - mesh.vertices[0])[mesh.triangles[points.faces]]
+    found: Floats = np.einsum("ij,ijk->ik", points.barycentric, corners)
+    return found
+
+
 @guards("stroke_map", "StrokeMap")
 def maps_do_not_fold(mesh: sb.Mesh, rng: Random) -> None:
     """Triangles keep their orientation by exact sign and none overlaps another; areas, arc lengths, distances agree."""
@@ -385,7 +392,7 @@ def maps_do_not_fold(mesh: sb.Mesh, rng: Random) -> None:
     found = sb.stroke_map(mesh, curve, radius)
     assert flipped(found) == 0
     assert overlapping(found) == 0
-    corners = found.vertices[found.triangles]
+    corners = places_about(mesh, found.points)[found.triangles]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
     np.testing.assert_allclose(found.area, areas.sum(), rtol=1e-9)
     assert 0 <= found.coverage <= 1
@@ -479,7 +486,7 @@ def maps_of_narrow_bands(mesh: sb.Mesh, rng: Random) -> None:
     across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     axes = np.stack([corners[1] - corners[0], np.cross(across, corners[1] - corners[0])])
     axes /= np.linalg.norm(axes, axis=1)[:, None]
-    line, places = ((at - corners[0]) @ axes.T for at in (points.positions(mesh), found.vertices))
+    line, places = ((places_about(mesh, at) - places_about(mesh, points)[0]) @ axes.T for at in (points, found.points))
     wanted = np.array([to_polyline(place, line)[0][0] for place in places])
     off = np.abs(np.abs(found.uv[:, 1]) - wanted)
     assert off.max() <= (1e-4 if len(line) == 2 else 1 / 3) * radius

@@ -231,8 +231,8 @@ bool is_beyond_ends(const Sheet& sheet, const Triangle& t, double length) {
 /// Puts the triangles together that have the right orientation; vertices of the curve meet again.
 class Patch {
  public:
-  Patch(StrokeMap& map, const Sheet& sheet, const PartedSheet& parted, const charts::NearPart& near)
-      : map_(map), sheet_(sheet), parted_(parted), near_(near) {}
+  Patch(StrokeMap& map, const Mesh& mesh, const Sheet& sheet, const PartedSheet& parted, const charts::NearPart& near)
+      : map_(map), mesh_(mesh), sheet_(sheet), parted_(parted), near_(near) {}
 
   /// Vertices are numbered anew for each side: off the curve one that both sides come to has two places.
   void begin_side() { number_.assign(parted_.nodes.size(), k_none); }
@@ -260,12 +260,13 @@ class Patch {
     if (number_[vertex] < next) return number_[vertex];
     const SurfacePoint& point = sheet_.points[node];
     map_.points.push_back({near_.faces[point.face], point.barycentric});
-    map_.vertices.push_back(sheet_.positions[node]);
+    map_.vertices.push_back(position(mesh_, map_.points.back()));
     map_.uv.push_back(place);
     return next;
   }
 
   StrokeMap& map_;
+  const Mesh& mesh_;
   const Sheet& sheet_;
   const PartedSheet& parted_;
   const charts::NearPart& near_;
@@ -317,7 +318,7 @@ StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius,
   const double size = k_size * std::clamp(curve.length(), 0.25 * radius, radius), reach = radius + size;
   const charts::NearPart near = charts::near_part(mesh, curve, radius, stage.part(0, 0.1));
   const SurfaceCurve line = curve_on(near, curve);
-  Sheet sheet = charts::cut_sheet(near.mesh, line, radius, size, stage.part(0.1, 0.3));
+  Sheet sheet = charts::cut_sheet(mesh, near, line, radius, size, stage.part(0.1, 0.3));
   const double length = curve.length();
   measure(sheet, curve.closed(), length, reach, stage.part(0.3, 0.7));
   cut_at_cut_locus(sheet, near.mesh, curve.closed(), length, stage);
@@ -329,7 +330,7 @@ StrokeMap stroke_map(const Mesh& mesh, const SurfaceCurve& curve, double radius,
   const PartedSheet parted(sheet, stage);
   StrokeMap map;
   map.length = length;
-  Patch patch(map, sheet, parted, near);
+  Patch patch(map, mesh, sheet, parted, near);
   std::vector<std::uint8_t> taken(sheet.triangles.size(), 0);
   for (const bool is_left : {false, true}) {
     const charts::SideBorder border = border_of(sheet, parted, is_left);

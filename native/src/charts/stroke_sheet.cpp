@@ -346,11 +346,12 @@ NearPart near_part(const Mesh& whole, const SurfaceCurve& curve, double radius, 
   }
   std::vector<Index> number(3 * faces.size());
   std::vector<double> xyz;
+  const Vec3 origin = whole.position(whole.from(3 * curve.segments().front().face));
   for (Index c = 0; c < static_cast<Index>(number.size()); ++c) {
     const Index root = corners.root(c);
     if (root == c) {
       number[c] = static_cast<Index>(xyz.size() / 3);
-      const Vec3& at = whole.position(whole.from(3 * faces[c / 3] + c % 3));
+      const Vec3 at = whole.position(whole.from(3 * faces[c / 3] + c % 3)) - origin;
       xyz.insert(xyz.end(), at.begin(), at.end());
     } else {
       number[c] = number[root];
@@ -359,7 +360,9 @@ NearPart near_part(const Mesh& whole, const SurfaceCurve& curve, double radius, 
   return {Mesh(xyz, number, stage), std::move(faces)};
 }
 
-Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, double size, const JobStage& stage) {
+Sheet cut_sheet(const Mesh& whole, const NearPart& part, const SurfaceCurve& curve, double radius, double size,
+                const JobStage& stage) {
+  const Mesh& near = part.mesh;
   const Unfolding unfolding(near);
   // Straight pieces one by one, since a line across may cross itself where it is no longer shortest.
   std::vector<SurfaceCurve> pieces;
@@ -382,8 +385,8 @@ Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, doub
   for (const SurfaceCurve& piece : pieces) all.push_back(&piece);
   // Beyond the radius as well, that a triangle with a part within it has no vertex that is farther beyond than `size`.
   const Beads beads(curve, radius + size);
-  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }};
-  BarrierCuts cuts(near, {}, all, stage, "curve: it", &fineness);
+  const Fineness fineness{size, [&](const Vec3& a, const Vec3& b) { return beads.may_reach(a, b); }, whole, part.faces};
+  BarrierCuts cuts(near, {}, all, stage, &fineness);
   Sheet sheet;
   for (Index f = 0; f < near.face_count(); ++f) {
     stage.check();

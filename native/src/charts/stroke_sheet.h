@@ -11,7 +11,8 @@
 
 namespace saddleback::charts {
 
-/// The part of a mesh near a curve, as a mesh of its own.
+/// The part of a mesh near a curve, as a mesh of its own about the curve: far from the origin of the whole one, places
+/// on a narrow map would be rounded to more than a ten-thousandth of the radius.
 struct NearPart {
   Mesh mesh;
   std::vector<Index> faces;  ///< of the whole mesh, whose corners keep their order
@@ -36,7 +37,8 @@ struct Sheet {
 
 /// Cuts faces along the curve and, at right angles, across its ends as far as `radius` (across a closed one where it
 /// starts); then divides triangles within the radius whose edges are longer than `size`. Without distances.
-Sheet cut_sheet(const Mesh& near, const SurfaceCurve& curve, double radius, double size, const JobStage& stage);
+Sheet cut_sheet(const Mesh& whole, const NearPart& part, const SurfaceCurve& curve, double radius, double size,
+                const JobStage& stage);
 
 /// Finds distances up to `reach`, infinity beyond; lines across the ends are walls only as far as they are shortest.
 void measure(Sheet& sheet, bool closed, double length, double reach, const JobStage& stage);

@@ -31,9 +31,8 @@ int parts_of(double way, double length) {
 }  // namespace
 
 BarrierCuts::BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-                         std::span<const SurfaceCurve* const> curves, const JobStage& stage, const char* only,
-                         const Fineness* fineness)
-    : mesh_(mesh), stage_(stage), only_(only), fineness_(fineness), lines_(curves.size()) {
+                         std::span<const SurfaceCurve* const> curves, const JobStage& stage, const Fineness* fineness)
+    : mesh_(mesh), stage_(stage), fineness_(fineness), lines_(curves.size()) {
   points_.reserve(static_cast<std::size_t>(mesh.vertex_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) points_.push_back(at_vertex(mesh, v));
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(static_cast<Index>(i), *curves[i]);
@@ -329,12 +328,12 @@ void BarrierCuts::follow(const Piece& piece, std::vector<Index>& chain) {
 }
 
 void BarrierCuts::refuse(Index curve, Index node) const {
-  const Vec3 place = position(mesh_, points_[node]);
-  if (only_)
-    throw InputError(message(only_, " crosses or touches itself at (", place.x(), ", ", place.y(), ", ", place.z(),
-                             "); give it as two curves"));
-  throw InputError(message("curves: curve ", curve, " crosses or touches itself at (", place.x(), ", ", place.y(), ", ",
-                           place.z(), ") in face ", points_[node].face, "; give it as two curves"));
+  const auto [face, weights] = points_[node];
+  const Index own = fineness_ ? fineness_->faces[face] : face;
+  const Vec3 place = position(fineness_ ? fineness_->whole : mesh_, {own, weights});
+  const std::string where = message("crosses or touches itself at (", place.x(), ", ", place.y(), ", ", place.z(), ")");
+  if (fineness_) throw InputError(message("curve: it ", where, "; give it as two curves"));
+  throw InputError(message("curves: curve ", curve, " ", where, " in face ", own, "; give it as two curves"));
 }
 
 void BarrierCuts::cut(Index face, std::vector<Triangle>& triangles) {
@@ -349,7 +348,9 @@ void BarrierCuts::cut(Index face, std::vector<Triangle>& triangles) {
   if (const auto found = edges_in_.find(face); found != edges_in_.end()) {
     for (const Edge& edge : found->second)
       if (!flat_.connect(number[edge.from], number[edge.to], stage_))
-        throw InputError(message("curves: they cross at too small an angle in face ", face, "; move one of them"));
+        throw InputError(message(fineness_ ? "curve: its parts meet" : "curves: they cross",
+                                 " at too small an angle in face ", fineness_ ? fineness_->faces[face] : face,
+                                 fineness_ ? "; move one of its points" : "; move one of them"));
   }
   flat_.improve(stage_);
   if (fineness_) divide_inside(face, nodes);

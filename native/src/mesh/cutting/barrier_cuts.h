@@ -18,10 +18,13 @@
 
 namespace saddleback {
 
-/// Asks for small triangles: edges longer than `length` are divided where `is_near` says so of their ends.
+/// Asks for small triangles about one curve, on a part of its mesh: edges longer than `length` are divided where
+/// `is_near` says so of their ends. Messages tell of the whole mesh.
 struct Fineness {
   double length;
   std::function<bool(const Vec3& a, const Vec3& b)> is_near;
+  const Mesh& whole;
+  const std::vector<Index>& faces;  ///< of the whole mesh that are the part's
 };
 
 /// Nodes are the vertices of the mesh and, numbered after them, the points at which curves bend, meet or cross edges.
@@ -29,12 +32,11 @@ struct Fineness {
 /// node in its middle.
 class BarrierCuts {
  public:
-  /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where and,
-  /// unless `only` names the only one that can, which. O(n^2) for n points of curves in a face; `stage` may stop it,
+  /// \throw InputError for an edge that is none of the mesh, a curve that crosses or touches itself, telling where and
+  /// which. O(n^2) for n points of curves in a face; `stage` may stop it,
   /// and later cuts.
   BarrierCuts(const Mesh& mesh, std::span<const std::array<Index, 2>> edges,
-              std::span<const SurfaceCurve* const> curves, const JobStage& stage, const char* only = nullptr,
-              const Fineness* fineness = nullptr);
+              std::span<const SurfaceCurve* const> curves, const JobStage& stage, const Fineness* fineness = nullptr);
 
   /// All nodes on the mesh: those within faces that are divided for fineness once these are cut.
   const SurfacePoints& points() const { return points_; }
@@ -88,7 +90,6 @@ class BarrierCuts {
 
   const Mesh& mesh_;
   const JobStage stage_;
-  const char* only_;
   const Fineness* fineness_;
   SurfacePoints points_;
   std::vector<Piece> pieces_;                               ///< in the order along the curves
