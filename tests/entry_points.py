@@ -407,6 +407,14 @@ def calls(at: Inputs) -> dict[str, Call]:
             at.vertices[at.triangles].reshape(-1, 3), np.arange(3 * len(at.triangles)).reshape(-1, 3)
         ),
         "sample": lambda: sb.sample(at.mesh, 20_000),
+        "segment_distances": lambda **more: sb.segment_distances(
+            at.vertices,
+            np.zeros(at.count, np.int32),
+            at.vertices[:99],
+            at.vertices[1:100],
+            np.zeros(99, np.int32),
+            **more,
+        ),
         "self_crossings": lambda **more: sb.self_crossings(at.vertices, at.triangles, **more),
         "show": lambda: if_installed(lambda: sb.show(at.mesh, is_shown=False)),
         "smoothed_directions": lambda **more: sb.smoothed_directions(at.triangles, at.vertices, 40, **more),

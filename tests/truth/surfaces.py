@@ -93,6 +93,7 @@ def counts_and_areas(mesh: sb.Mesh, rng: Random) -> None:
     "vertex_normals",
     "neighbor_means",
     "smoothed_directions",
+    "segment_distances",
     "cell_boundary",
     "cell_boundary_distance",
     "refine_to_cell_boundary",
@@ -127,6 +128,17 @@ def array_functions(mesh: sb.Mesh, rng: Random) -> None:
     np.testing.assert_allclose(sb.smoothed_directions(mesh.triangles, directions, 1), turned, atol=1e-9)
     twice = sb.smoothed_directions(mesh.triangles, turned, 1)
     np.testing.assert_allclose(sb.smoothed_directions(mesh.triangles, directions, 2), twice, atol=1e-9)
+    group, other = rng.integers(0, 4, mesh.vertex_count), rng.integers(0, 3, 20)
+    starts, ends = mesh.vertices[rng.integers(0, mesh.vertex_count, (2, 20))]
+    shares = np.linspace(0, 1, 201)[:, None]
+    on = [starts[other == g][:, None] * (1 - shares) + ends[other == g][:, None] * shares for g in range(4)]
+    sampled = np.array(
+        [np.linalg.norm(on[g] - p, axis=2).min(initial=np.inf) for g, p in zip(group, mesh.vertices, strict=True)]
+    )
+    found = sb.segment_distances(mesh.vertices, group, starts, ends, other)
+    step, rounding = np.linalg.norm(ends - starts, axis=1).max() / 400, 1e-12 * np.abs(mesh.vertices).max()
+    assert (np.isinf(found) == np.isinf(sampled)).all()
+    assert ((found <= sampled + rounding) & (found >= sampled - step - rounding)).all()
     cells = rng.integers(0, 3, mesh.face_count).astype(np.int32)
     distance = sb.cell_boundary_distance(mesh.vertices, mesh.triangles, cells)
     assert (distance >= 0).all()

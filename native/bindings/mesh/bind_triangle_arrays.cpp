@@ -105,6 +105,22 @@ py::array boundary_distance(const py::object& vertices, const py::object& triang
   }));
 }
 
+py::array to_segments(const py::object& points, const py::object& point_group, const py::object& starts,
+                      const py::object& ends, const py::object& segment_group, const py::object& job) {
+  const ArrayIn<double> xyz = as_points3(points, "points"), from = as_points3(starts, "starts");
+  const ArrayIn<double> to = as_points3(ends, "ends");
+  const ArrayIn<Index> of_points = as_indices(point_group, "point_group");
+  const ArrayIn<Index> of_segments = as_indices(segment_group, "segment_group");
+  if (from.count != to.count) throw InputError(message("ends: wanted ", from.count, ", got ", to.count));
+  const JobIn token(job);
+  return to_array(without_gil([&] {
+    std::vector<std::array<Vec3, 2>> segments;
+    for (Index i = 0; i < from.count; ++i) segments.push_back({points_of(from)[i], points_of(to)[i]});
+    return segment_distances(points_of(xyz), of_points.values, segments, of_segments.values,
+                             JobStage(token, "Measuring distances to lines"));
+  }));
+}
+
 py::tuple refine(const py::object& fields, const py::object& triangles, const py::object& cells,
                  const py::object& levels, const py::object& tolerance) {
   const ArrayIn<double> rows = as_rows(fields, "fields", k_wanted_rows);
@@ -290,6 +306,32 @@ Returns
 Notes
 -----
 O(V + T) for a fixed number of rings. A vector distance transform [danielsson1980].)");
+  m.def("segment_distances", &to_segments, py::arg("points"), py::arg("point_group"), py::arg("starts"),
+        py::arg("ends"), py::arg("segment_group"), py::kw_only(), py::arg("job") = py::none(),
+        R"(Measure how far points are from straight segments, each from those of its own group only.
+
+Parameters
+----------
+points : (n, 3) float array
+point_group : (n,) int array
+    The group of each point, 0 or more: the cell that it lies in, say.
+starts, ends : (m, 3) float arrays
+    Of the segments.
+segment_group : (m,) int array
+    The group of each.
+job : Job, optional
+
+Returns
+-------
+(n,) float64
+    Straight through space; infinity where the group has no segment. O(n + m log m) and for each point the segments of
+    its group.
+
+Raises
+------
+InputError
+    A group below 0; another number of groups than points or segments.
+Cancelled)");
   m.def("refine_to_cell_boundary", &refine, py::arg("fields"), py::arg("triangles"), py::arg("triangle_cell"),
         py::arg("levels"), py::arg("tolerance"),
         R"(Refine triangles until lines of equal distance to the boundary of the cells come out right on them.

@@ -2311,6 +2311,41 @@ def cut_at_level(
         Whether it lies above the level; a triangle wholly on it does not. O(V k + T).
     """
 
+def segment_distances(
+    points: ArrayLike,
+    point_group: ArrayLike,
+    starts: ArrayLike,
+    ends: ArrayLike,
+    segment_group: ArrayLike,
+    *,
+    job: Job | None = None,
+) -> _Floats:
+    """Measure how far points are from straight segments, each from those of its own group only.
+
+    Parameters
+    ----------
+    points : (n, 3) float array
+    point_group : (n,) int array
+        The group of each point, 0 or more: the cell that it lies in, say.
+    starts, ends : (m, 3) float arrays
+        Of the segments.
+    segment_group : (m,) int array
+        The group of each.
+    job : Job, optional
+
+    Returns
+    -------
+    (n,) float64
+        Straight through space; infinity where the group has no segment. O(n + m log m) and for each point the segments of
+        its group.
+
+    Raises
+    ------
+    InputError
+        A group below 0; another number of groups than points or segments.
+    Cancelled
+    """
+
 def self_crossings(
     vertices: ArrayLike,
     triangles: ArrayLike,

@@ -76,6 +76,23 @@ def test_directions_turn_towards_their_neighbors() -> None:
         sb.smoothed_directions(triangles, rough, -1)
 
 
+def test_points_are_measured_to_the_segments_of_their_own_group() -> None:
+    points = [[0.0, 0, 3], [0, 0, 3], [5, 0, 0], [0, 0, 3], [2, 4, 3]]
+    starts, ends = [[-1.0, 0, 0], [-4, 1, 3], [0, 0, 1]], [[1.0, 0, 0], [4, 1, 3], [0, 0, 1]]
+    found = sb.segment_distances(points, [7, 0, 7, 1, 0], starts, ends, [7, 0, 7])
+    np.testing.assert_allclose(found, [2, 1, np.hypot(4, 0), np.inf, 3])
+    assert sb.segment_distances(np.zeros((0, 3)), [], starts, ends, [7, 0, 7]).shape == (0,)
+    for groups, owners, words in (
+        ([0], [0, 0, 0], "point_group: wanted 5, got 1"),
+        ([0] * 5, [0, 0], "segment_group: wanted 3, got 2"),
+        ([0, -1, 0, 0, 0], [0] * 3, r"point_group\[1\] is -1, but must be 0 or more"),
+    ):
+        with pytest.raises(sb.InputError, match=words):
+            sb.segment_distances(points, groups, starts, ends, owners)
+    with pytest.raises(sb.InputError, match="ends: wanted 3, got 2"):
+        sb.segment_distances(points, [0] * 5, starts, ends[:2], [0] * 3)
+
+
 def test_normals_of_a_sphere_point_outwards_and_unused_vertices_have_none() -> None:
     vertices, triangles = synthetic_cells.sphere(4)
     normals = sb.vertex_normals(np.vstack([vertices, [[9.0, 9.0, 9.0]]]), triangles)

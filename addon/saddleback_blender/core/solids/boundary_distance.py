@@ -22,19 +22,6 @@ def find_boundary(vertex_count: int, triangles: Ints, triangle_cell: Ints) -> tu
     return segments, cells
 
 
-def segment_distance(points: Floats, a: Floats, b: Floats) -> Floats:
-    """Distance (n,) of points (n,3) to the segments from a to b (n,3)."""
-    along = b - a
-    to_point = points - a
-    squared_length = np.einsum("ij,ij->i", along, along)
-    position = np.einsum("ij,ij->i", to_point, along)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        position = np.where(squared_length > 0.0, position / squared_length, 0.0)
-    offset = to_point - along * np.clip(position, 0.0, 1.0)[:, None]
-    distance: Floats = np.sqrt(np.einsum("ij,ij->i", offset, offset))
-    return distance
-
-
 def boundary_distance(vertices: Floats, triangles: Ints, triangle_cell: Ints, limit: float = np.inf) -> Floats:
     """Distance (V,) to the boundary of the vertex's own cell; inf beyond the ring of vertices that follows `limit`.
 

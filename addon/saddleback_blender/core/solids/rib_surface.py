@@ -8,7 +8,6 @@ of the distance to the lines. It is not cut along the lines themselves, so no tr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,6 @@ from .. import native
 from ..errors import BadInputError
 from ..progress import Progress
 from ..results import Indices, Reals
-from .boundary_distance import segment_distance
 from .cell_mesh import drop_unused
 from .directions import smooth_directions
 from .level_cut import cut_at_level, split_edges
@@ -28,8 +26,6 @@ from .sewn import sewn
 # Vertices nearer to the level than this share of half the width are moved off it: then the cut passes through no
 # vertex, the strip is a surface everywhere (nowhere two pieces meet in a point), and no triangle is a needle.
 OFF_LEVEL = 0.05
-# Pairs of a point and a segment that are measured at once.
-PAIRS = 1 << 17
 # Ribs are this many times as long as wide at most, all together; a solid has about forty triangles for each.
 MOST_STEPS = 100_000
 POSITION, DISTANCE, DIRECTION = slice(0, 3), 3, slice(4, 7)
@@ -173,7 +169,7 @@ def _length(mesh: Any, cells: Any) -> float:
 
 
 class _Lines:
-    """The lines between cells in straight pieces, listed by cell."""
+    """The lines between cells in straight pieces, each with the cell it bounds."""
 
     def __init__(self, mesh: Any, cells: Any, width: float) -> None:
         points, offsets = np.asarray(cells.edge_points), np.asarray(cells.edge_offsets)
@@ -183,34 +179,15 @@ class _Lines:
         rim_first, rim_second, rim_cell = _rim(mesh, cells, 0.5 * width)
         self.first = np.concatenate([points[inner], points[inner], rim_first])
         self.second = np.concatenate([points[inner + 1], points[inner + 1], rim_second])
-        owner = np.concatenate([sides[:, 0], sides[:, 1], rim_cell])
-        order = np.argsort(owner, kind="stable")
-        self.first, self.second = self.first[order], self.second[order]
-        self.count = np.bincount(owner, minlength=len(cells.areas))
-        self.begin = np.cumsum(self.count) - self.count
+        self.owner = np.concatenate([sides[:, 0], sides[:, 1], rim_cell])
         self.cells = cells
 
     def distance(self, places: Reals, points: Any, progress: Progress) -> Reals:
         """Distance (n,) to the lines around each point's own cell, straight through space; inf where there is none."""
-        found = np.full(len(places), np.inf)
-        if not len(places):
-            return found
         progress.check()
         own = self.cells.cells_at(points)
-        count = self.count[own]
-        total = np.cumsum(count)
-        cuts = np.searchsorted(total, np.arange(0, int(total[-1]) + PAIRS, PAIRS), side="left")
-        for low, high in pairwise(cuts):
-            progress.check()
-            part = np.arange(low, min(high + 1, len(places)))
-            part = part[count[part] > 0]
-            if not len(part):
-                continue
-            start = np.cumsum(count[part]) - count[part]
-            which = np.repeat(np.arange(len(part)), count[part])
-            segment = self.begin[own[part]][which] + np.arange(len(which)) - start[which]
-            length = segment_distance(places[part][which], self.first[segment], self.second[segment])
-            found[part] = np.minimum.reduceat(length, start)
+        with progress.stage(progress.fraction, "measuring ribs") as job:
+            found: Reals = native.load().segment_distances(places, own, self.first, self.second, self.owner, job=job)
         return found
 
 

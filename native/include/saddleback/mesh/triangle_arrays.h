@@ -87,6 +87,14 @@ std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::
                                            std::span<const Index> triangle_cell, double limit,
                                            const JobStage& stage = {});
 
+/// Distance (n,) of points to the nearest segment of their group (n,), straight through space; infinity where that has
+/// none. `ends` (m,) are those of the segments, `segment_group` (m,) says to which group each belongs, 0 or more.
+/// \throw InputError for groups below 0, and a wrong number of them; Cancelled. O(n + m) and the segments of each
+/// point's group, all cores.
+std::vector<double> segment_distances(std::span<const Vec3> points, std::span<const Index> point_group,
+                                      std::span<const std::array<Vec3, 2>> ends, std::span<const Index> segment_group,
+                                      const JobStage& stage = {});
+
 struct BoundaryRefinement {
   std::vector<double> fields;       ///< (W, k) the given vertices, then the new ones
   std::vector<Triangle> triangles;  ///< (U,)
