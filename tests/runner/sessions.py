@@ -115,6 +115,7 @@ class BlenderSession(pytest.Item):
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
         environment |= {
             "BLENDER_USER_RESOURCES": str(resources),
+            "OPENBLAS_NUM_THREADS": "1",  # idle ones of numpy loop for work on a core that is wanted
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
             "SADDLEBACK_REPORTS": str(self.reports),
             **self.blender.environment,
