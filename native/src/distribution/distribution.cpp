@@ -165,6 +165,8 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
 void share_out(DistributionOptions& options) {
   std::vector<double>& shares = options.shares;
   if (shares.empty()) return;
+  const OnlyRatios ratios(options.shares);
+  shares = std::vector<double>(ratios.values().begin(), ratios.values().end());
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   for (double& share : shares) share /= sum;
   if (options.counts.empty()) return;

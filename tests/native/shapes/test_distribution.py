@@ -79,6 +79,7 @@ def test_shares_are_kept_even_where_room_runs_out(counts) -> None:
     result = sb.distribute(mesh, [STAR, NEEDLE, DISK], counts, field, size=0.1, shares=shares)
     found = np.bincount(result.placements.shape, minlength=3)
     assert np.abs(found / found.sum() - shares / 10).max() < 0.02 and found.sum() >= 150
+
     if counts == 200:
         assert found.tolist() == [100, 60, 40] and result.stop_reason == "counts"
     else:
@@ -370,6 +371,13 @@ def test_few_tiny_copies_take_no_longer_the_tinier_they_are(options: dict[str, o
     laid = sb.distribute(mesh, shapes, size=1e-5, threads=1, **{"counts": 1000, **options})
     assert len(laid.placements) == 1000
     assert time.process_time() - began < 2
+
+
+@pytest.mark.parametrize("unit", [1e-323, 1e308])
+def test_only_ratios_of_shares_count(unit: float) -> None:
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    result = sb.distribute(mesh, [STAR, DISK], 8, size=0.05, shares=[unit, unit])
+    assert np.bincount(result.placements.shape).tolist() == [4, 4]
 
 
 @pytest.mark.parametrize("unit", [1e200, 1e-300, 1e-310])
