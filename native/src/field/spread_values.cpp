@@ -205,7 +205,14 @@ std::vector<double> spread_values(const Mesh& mesh, const SurfacePoints& places,
     result = spread_harmonic(mesh, places, shares, mean_of(shares), stage);
     for (double& value : result) value = 2 * (low / 2 + half * value);
   } else {
-    result = Splines(mesh, places, stage).through(values, mean_of(values));
+    // Sums of the largest numbers would be more than any: beyond this exponent a power of two is taken out, exactly.
+    constexpr int k_most = 900;
+    const double largest = std::max(std::abs(low), std::abs(high));
+    const int exponent = largest > 0 && std::ilogb(largest) > k_most ? std::ilogb(largest) : 0;
+    std::vector<double> scaled;
+    for (const double value : values) scaled.push_back(std::ldexp(value, -exponent));
+    result = Splines(mesh, places, stage).through(scaled, mean_of(scaled));
+    for (double& value : result) value = std::ldexp(value, exponent);
   }
   for (double& value : result) value = std::clamp(value, low, high);
   stage.update(1);

@@ -76,6 +76,13 @@ def test_a_range_far_from_zero_or_small_is_met_as_any_other(method: str, factor:
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_values_near_the_largest_number(method: str) -> None:
+    values = np.array([1.7e308, -1.7e308, 1.6e308, 1.5e308])
+    spread = sb.spread_values(sb.Mesh(*meshes.icosphere(2)), [0, 40, 80, 120], values, method)
+    np.testing.assert_allclose(spread[[0, 40, 80, 120]] / 1e308, values / 1e308, atol=1e-5)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_components_without_a_place_have_the_mean(method: str) -> None:
     mesh = sb.Mesh(*meshes.two_components())
     spread = sb.spread_values(mesh, [0, 5], [1, 4], method)
