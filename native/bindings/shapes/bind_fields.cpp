@@ -410,7 +410,9 @@ void bind_direction_field(py::module_& m) {
            "(n, 3) float64: the field at vertices or SurfacePoints, unit vectors in the planes of the points' faces; "
            "continuous but at vertices, about which it turns evenly (there a mean is given).")
       .def("turned", &turned, py::arg("angle"),
-           "Returns the field turned everywhere by an angle, radians counter-clockwise.")
+           "Returns the field turned everywhere by an angle, radians counter-clockwise. Raises InputError for one that "
+           "is "
+           "not finite.")
       .def("__repr__", [](const DirectionField& field) {
         return message("<DirectionField: symmetry ", field.symmetry(), ", ", field.angles().size(), " faces, ",
                        field.singularities().size(), " singularities>");

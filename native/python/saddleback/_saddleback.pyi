@@ -3922,7 +3922,7 @@ class DirectionField:
     def directions(self, points: _Points) -> _Floats:
         """(n, 3) float64: the field at vertices or SurfacePoints, unit vectors in the planes of the points' faces; continuous but at vertices, about which it turns evenly (there a mean is given)."""
     def turned(self, angle: SupportsFloat) -> DirectionField:
-        """Returns the field turned everywhere by an angle, radians counter-clockwise."""
+        """Returns the field turned everywhere by an angle, radians counter-clockwise. Raises InputError for one that is not finite."""
 
 @final
 class DirectionFieldEditor:

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "saddleback/error.h"
+
 #include "field/connection/filled_surface.h"
 #include "field/linear/row_blocks.h"
 
@@ -111,8 +113,10 @@ double DirectionField::angle_at(const SurfacePoint& point) const {
 }
 
 DirectionField DirectionField::turned(double angle) const {
+  if (!std::isfinite(angle)) throw InputError(message("angle is ", angle, ", but must be finite"));
   DirectionField result = *this;
-  for (double& own : result.angles_) own = std::remainder(own + angle, k_turn);
+  const double turn = std::remainder(angle, k_turn);  // of many turns, sums would keep nothing of the field
+  for (double& own : result.angles_) own = std::remainder(own + turn, k_turn);
   return result;
 }
 

@@ -15,9 +15,12 @@ namespace {
 
 /// The part of a vector within a face as an angle in the face's chart.
 double angle_within(const Mesh& mesh, Index face, const Vec3& vector) {
-  const std::complex<double> part = part_within(mesh, face, vector);
   if (!vector.allFinite()) throw InputError(message("vectors: the one of face ", face, " is not finite"));
-  if (!has_part_within(part, vector))
+  const double largest = vector.cwiseAbs().maxCoeff();
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;  // taken out exactly: squares stay among the doubles
+  const Vec3 scaled = vector.unaryExpr([&](double v) { return std::ldexp(v, -exponent); });
+  const std::complex<double> part = part_within(mesh, face, scaled);
+  if (!has_part_within(part, scaled))
     throw InputError(message("vectors: the one of face ", face, " has no direction within the face"));
   return std::arg(part);
 }

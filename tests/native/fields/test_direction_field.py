@@ -478,12 +478,27 @@ def test_vectors_that_are_no_directions_are_refused() -> None:
         sb.DirectionField.from_vectors(mesh, vectors, 3)
     with pytest.raises(sb.InputError, match=f"each of the {mesh.face_count} faces, got 7"):
         sb.DirectionField.from_vectors(mesh, vectors[:7])
+    given = sb.DirectionField.from_vectors(mesh, vectors)
+    for unit in (1e-308, 1e200, 1e308):  # lengths do not count
+        np.testing.assert_allclose(
+            sb.DirectionField.from_vectors(mesh, unit * vectors).vectors, given.vectors, atol=1e-12
+        )
     vectors[5] = mesh_normals(mesh)[5]
     with pytest.raises(sb.InputError, match="face 5 has no direction"):
         sb.DirectionField.from_vectors(mesh, vectors)
     vectors[4] = np.nan
     with pytest.raises(sb.InputError, match=r"vectors"):
         sb.DirectionField.from_vectors(mesh, vectors)
+
+
+def test_fields_are_turned_by_any_angle() -> None:
+    field = sb.direction_field(sb.Mesh(*meshes.icosphere(2)), 1)
+    for angle in (1e6, 1e300):
+        turned = field.turned(angle)
+        np.testing.assert_allclose(turned.vectors, field.turned(np.remainder(angle, 2 * np.pi)).vectors, atol=1e-9)
+    for angle in (np.nan, np.inf):
+        with pytest.raises(sb.InputError, match="angle is"):
+            field.turned(angle)
 
 
 def mesh_normals(mesh: sb.Mesh) -> Floats:
