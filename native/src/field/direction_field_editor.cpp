@@ -76,7 +76,7 @@ std::vector<Complex> wanted_powers(const Mesh& mesh, int symmetry, const Directi
   std::vector<Complex> result;
   if (options.directions) result = powers_of_directions(mesh, symmetry, *options.directions);
   if (options.align != FieldAlignment::curvature) return result;
-  std::vector<Complex> bent = curvature_powers(mesh, symmetry, options.align_weight, stage);
+  std::vector<Complex> bent = curvature_powers(mesh, symmetry, weight_within_bounds(options.align_weight), stage);
   if (result.empty()) return bent;
   for (Index f = 0; f < mesh.face_count(); ++f) result[f] += bent[f];
   return result;

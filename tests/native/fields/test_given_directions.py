@@ -131,6 +131,26 @@ def test_weights_decide_and_zero_gives_nothing() -> None:
     assert means[1] < means[0] / 2
 
 
+@pytest.mark.parametrize(("weight", "singularities"), [(1e-300, None), (1e308, None), (1e308, {})])
+def test_weights_of_any_size(weight: float, singularities: dict[int, float] | None) -> None:
+    """Those beyond what single precision holds gave directions that nobody had asked for."""
+    mesh = sb.Mesh(*meshes.grid(16, 12))
+    wanted = np.tile([1.0, 1.0, 0.0], (mesh.face_count, 1))
+    field = sb.direction_field(mesh, 2, singularities, directions=wanted, weights=np.full(mesh.face_count, weight))
+    assert np.abs(field.vectors @ [1, 1, 0]).min() >= 0.999 * np.sqrt(2)
+
+
+@pytest.mark.parametrize("weight", [1e-300, 1e308])
+def test_strokes_and_alignment_of_any_weight(weight: float) -> None:
+    mesh = sb.Mesh(*meshes.cylinder(24, 15, height=3.0))
+    bent = sb.direction_field(mesh, 2, align="curvature", align_weight=weight)
+    assert np.abs(bent.vectors[:, 2]).min() > 0.99
+    grid = sb.Mesh(*meshes.grid(16, 12))
+    first = np.flatnonzero(grid.vertices[:, 1] == grid.vertices[:, 1].min())
+    stroke = sb.Stroke(sb.SurfaceCurve(grid, first[grid.vertices[first, 0].argsort()]), weight=weight)
+    assert np.abs(sb.direction_field(grid, 2, strokes=[stroke]).vectors[:, 0]).min() > 0.99
+
+
 def test_hard_strokes_are_met_all_the_same() -> None:
     mesh = sb.Mesh(*SURFACES["grid"])
     stroke = sb.SurfaceCurve(mesh, sb.trace(mesh, 0, 0.3, 0.8 * np.ptp(mesh.vertices[:, 0])).surface)

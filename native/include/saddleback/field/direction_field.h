@@ -62,8 +62,8 @@ class DirectionField {
     return {angles_[h / 3] + along_[h], angles_[h / 3] + before_[h]};
   }
 
-  /// Returns the same field turned by a constant angle, radians counter-clockwise. \throw InputError for one that is not
-  /// finite.
+  /// Returns the same field turned by a constant angle, radians counter-clockwise. \throw InputError for one that is
+  /// not finite.
   DirectionField turned(double angle) const;
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 // Values of faces that vary as little as possible and are drawn to given ones: linear systems.
 
+#include <algorithm>
 #include <complex>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct PowerGraph {
 /// Stiffness of what is drawn softly with weight 1 all through a face, against about that of the usual tie to each
 /// neighbor: fields meet it to within a degree or two.
 inline constexpr double k_drawn_stiffness = 30, k_usual_tie = 1.7;
+
+/// A positive weight within bounds beyond which fields tell no difference: the solver works in single precision, and
+/// squares what draws.
+inline double weight_within_bounds(double weight) { return std::clamp(weight, 1e-100, 1e24); }
 
 /// Holds what draws the value of each face: stiffness 0 for nothing, k_fixed for exactly.
 template <class Scalar>

@@ -92,7 +92,8 @@ std::vector<Complex> powers_of_directions(const Mesh& mesh, int symmetry, const 
                              mesh.vertex_count(), " vertices, got ", count));
   check_given(given, is_of_faces ? "face " : "vertex ");
   const auto stiffness = [&](std::size_t i) {
-    return k_drawn_stiffness * (given.weights.empty() ? 1 : given.weights[i]);
+    const double weight = given.weights.empty() ? 1 : given.weights[i];
+    return weight > 0 ? k_drawn_stiffness * weight_within_bounds(weight) : 0;
   };
   if (!is_of_faces) {
     const std::vector<Vec3> normals = vertex_normals(mesh.positions(), mesh.triangles());

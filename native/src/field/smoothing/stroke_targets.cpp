@@ -62,7 +62,8 @@ StrokeFaces faces_of(const Mesh& mesh, const Stroke& stroke, std::size_t number,
   for (StrokeFace& face : result) {
     const double size = std::sqrt(2 * mesh.face_area(face.face));
     face.stiffness =
-        stroke.is_hard ? k_fixed : k_drawn_stiffness * stroke.weight * std::min(1.0, face.stiffness / size);
+        stroke.is_hard ? k_fixed
+                       : k_drawn_stiffness * weight_within_bounds(stroke.weight) * std::min(1.0, face.stiffness / size);
   }
   return result;
 }
