@@ -26,7 +26,7 @@ PlanarDomain as_domain(const py::object& value, const char* name) {
   } else {
     loops.push_back(as_points_2d(value, name));
   }
-  return PlanarDomain(std::move(loops));
+  return PlanarDomain(std::move(loops), name);
 }
 
 }  // namespace saddleback::bindings

@@ -379,7 +379,7 @@ void bind_voronoi_2d(py::module_& m) {
           "clip",
           [](const Diagram& d, const py::object& polygon, const py::object& gap, const py::object& tolerance,
              const py::object& threads, const py::object& job) {
-            const PlanarDomain domain = as_domain(polygon, "domain");
+            const PlanarDomain domain = as_domain(polygon, "polygon");
             const ClipOptions options{.gap = as_real(gap, "gap"),
                                       .tolerance = as_real(tolerance, "tolerance"),
                                       .threads = as_integer(threads, "threads")};

@@ -16,12 +16,25 @@ namespace {
 
 using predicates::Loop;
 
-/// Tells whether a loop that at most touches another lies in it: by a corner that the other does not pass through, or
-/// by the middle of a side if there is none.
+struct Box {
+  Vec2 low, high;
+  bool holds(const Vec2& point) const { return (low.array() <= point.array() && point.array() <= high.array()).all(); }
+  bool holds(const Box& other) const { return holds(other.low) && holds(other.high); }
+};
+
+Box box_of(const Loop& loop) {
+  Box box{loop[0], loop[0]};
+  for (const Vec2& corner : loop) box = {box.low.cwiseMin(corner), box.high.cwiseMax(corner)};
+  return box;
+}
+
+/// Tells whether a loop that at most touches another, and whose box lies in the other's, lies in it: by a corner that
+/// the other does not pass through, or by the middle of a side if there is none.
 bool lies_in(const Loop& outer, const Loop& inner) {
   for (const Vec2& corner : inner) {
     const auto passes = [&](std::size_t i) {
-      return predicates::segments_touch(outer[i], outer[(i + 1) % outer.size()], corner, corner);
+      const Vec2 &a = outer[i], &b = outer[(i + 1) % outer.size()];
+      return Box{a.cwiseMin(b), a.cwiseMax(b)}.holds(corner) && predicates::segments_touch(a, b, corner, corner);
     };
     std::size_t i = 0;
     while (i < outer.size() && !passes(i)) ++i;
@@ -32,27 +45,32 @@ bool lies_in(const Loop& outer, const Loop& inner) {
 
 }  // namespace
 
-PlanarDomain::PlanarDomain(std::vector<std::vector<Vec2>> loops) : loops_(std::move(loops)) {
-  if (loops_.empty()) throw InputError("domain: wanted an outline, got nothing");
+PlanarDomain::PlanarDomain(std::vector<std::vector<Vec2>> loops, const char* argument) : loops_(std::move(loops)) {
+  if (loops_.empty()) throw InputError(message(argument, ": wanted an outline, got nothing"));
   for (std::size_t l = 0; l < loops_.size(); ++l) {
     std::vector<Vec2>& loop = loops_[l];
     loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
     if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
     if (loop.size() < 3)
-      throw InputError(message("domain: loop ", l, " has ", loop.size(), " corners, wanted 3 or more"));
+      throw InputError(message(argument, ": loop ", l, " has ", loop.size(), " corners, wanted 3 or more"));
     for (std::size_t i = 0; i < loop.size(); ++i)
       if (!(loop[i].array().abs() <= 1e60).all())  // squares of areas stay among the doubles
-        throw InputError(message("domain: corner ", i, " of loop ", l, " is (", loop[i].x(), ", ", loop[i].y(),
+        throw InputError(message(argument, ": corner ", i, " of loop ", l, " is (", loop[i].x(), ", ", loop[i].y(),
                                  "), wanted numbers up to 1e60"));
   }
   if (const auto meeting = predicates::first_meeting(loops_, true))
-    throw InputError(message("domain: the edge after corner ", meeting->corner, " of loop ", meeting->loop,
+    throw InputError(message(argument, ": the edge after corner ", meeting->corner, " of loop ", meeting->loop,
                              " meets the edge after corner ", meeting->other_corner, " of loop ", meeting->other_loop));
+  std::vector<Box> boxes;
+  for (const Loop& loop : loops_) boxes.push_back(box_of(loop));
+  const auto holds = [&](std::size_t outer, std::size_t inner) {
+    return boxes[outer].holds(boxes[inner]) && lies_in(loops_[outer], loops_[inner]);
+  };
   for (std::size_t l = 0; l < loops_.size(); ++l) {
     if ((twice_area(loops_[l]) > 0) != (l == 0)) std::reverse(loops_[l].begin(), loops_[l].end());
     for (std::size_t other = 0; other < l; ++other)
-      if (lies_in(loops_[other], loops_[l]) != (other == 0) || (other > 0 && lies_in(loops_[l], loops_[other])))
-        throw InputError(message("domain: loop ", l, " is not a hole: it lies ",
+      if (holds(other, l) != (other == 0) || (other > 0 && holds(l, other)))
+        throw InputError(message(argument, ": loop ", l, " is not a hole: it lies ",
                                  other == 0 ? "outside the outline" : message("within or around loop ", other)));
   }
 }

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -120,6 +122,34 @@ def test_a_million_points_find_their_sites():
 def test_domains_that_are_no_simple_polygons_are_named(domain, text):
     with pytest.raises(sb.InputError, match=text):
         sb.voronoi_2d([[0, 0]], domain=domain)
+
+
+def test_a_polygon_is_refused_by_its_name():
+    diagram = sb.voronoi_2d([[0, 0]])
+    for polygon in ([1, 2], [[0, 0], [1, 0]], [[0, 0], [1, 1], [1, 0], [0, 1]], []):
+        with pytest.raises(sb.InputError, match=r"^polygon: "):
+            diagram.clip(polygon)
+
+
+def test_time_does_not_grow_with_holes_or_corners_times_cells():
+    """A sheet with holes took loops squared, and each cell away from the outline one look at every corner."""
+    turn = 2 * np.pi * np.arange(16) / 16
+    ring = 0.3 * np.column_stack([np.cos(turn), np.sin(turn)])
+    holes = [ring + [i + 0.5, j + 0.5] for i in range(50) for j in range(50)]
+    start = time.perf_counter()
+    plate = sb.voronoi_2d([[1, 1]], domain=[[[0, 0], [50, 0], [50, 50], [0, 50]], *holes]).clipped
+    assert plate.areas.sum() == pytest.approx(2500 * (1 - abs(shoelace(ring))), rel=1e-12)
+    assert time.perf_counter() - start < 2  # was 15
+    turn = 2 * np.pi * np.arange(20_000) / 20_000
+    disk = np.column_stack([np.cos(turn), np.sin(turn)])
+    sites = 0.9 * plane_sites.uniform(100_000, np.random.default_rng(6))  # far from the outline
+    diagram = sb.voronoi_2d(np.vstack([sites, 3 * disk[::500]]))
+    start = time.perf_counter()
+    areas = diagram.clip(0.001 * disk + sites.mean(axis=0)).areas
+    assert areas.sum() == pytest.approx(1e-6 * shoelace(disk), rel=1e-9)
+    areas = diagram.clip(4 * disk).areas
+    assert areas.sum() == pytest.approx(16 * shoelace(disk), rel=1e-10)
+    assert time.perf_counter() - start < 2
 
 
 def test_locate_refuses_what_it_cannot_answer():

@@ -14,8 +14,9 @@ class PlanarDomain {
   /// The outline first, then the holes, each in either direction, its last corner joined to its first. Corners may be
   /// repeated in a row, and loops may touch other loops in points. \throw InputError naming loop and corner: fewer than
   /// three corners, a coordinate that is not finite or beyond 1e60, loops that touch or cross themselves, cross each
-  /// other or have a part of a side in common, a hole outside. O(m log m) expected.
-  explicit PlanarDomain(std::vector<std::vector<Vec2>> loops);
+  /// other or have a part of a side in common, a hole outside; it begins with `argument`. O(m log m + loops (m_0 +
+  /// loops)) expected, m_0 of the m corners in the outline.
+  explicit PlanarDomain(std::vector<std::vector<Vec2>> loops, const char* argument = "domain");
 
   /// Outline counter-clockwise, holes clockwise.
   std::span<const std::vector<Vec2>> loops() const { return loops_; }

@@ -2,6 +2,7 @@
 // A map of the parts of the plane that are far from a domain's edges.
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -9,10 +10,10 @@
 
 namespace saddleback::voronoi2d {
 
-/// Squares over the domain's box, marked where an edge may pass.
+/// Squares over the domain's box, marked where an edge may pass; the others lie inside or outside.
 class DomainMap {
  public:
-  DomainMap(const PlanarDomain& domain, Index size) : domain_(domain), size_(size) {
+  DomainMap(const PlanarDomain& domain, Index size) : size_(size) {
     for (const Vec2& p : domain.loops()[0]) {
       lower_ = lower_.cwiseMin(p);
       upper_ = upper_.cwiseMax(p);
@@ -23,6 +24,7 @@ class DomainMap {
       for (std::size_t i = 0; i < loop.size(); ++i) mark(loop[i], loop[(i + 1) % loop.size()]);
     for (Index y = 1; y <= size; ++y)
       for (Index x = 1; x <= size; ++x) sum(x, y) += sum(x - 1, y) + sum(x, y - 1) - sum(x - 1, y - 1);
+    find_inside(domain);
   }
 
   enum class Place { outside, inside, at_edge };
@@ -32,7 +34,7 @@ class DomainMap {
     if ((low.array() < lower_.array()).any() || (high.array() > upper_.array()).any()) return Place::at_edge;
     const Index x = column(low.x()), y = row(low.y()), end_x = column(high.x()) + 1, end_y = row(high.y()) + 1;
     if (sum(end_x, end_y) - sum(x, end_y) - sum(end_x, y) + sum(x, y) > 0) return Place::at_edge;
-    return domain_.contains(low) ? Place::inside : Place::outside;
+    return is_inside_[place_of(x, y)] != 0 ? Place::inside : Place::outside;
   }
 
  private:
@@ -58,12 +60,31 @@ class DomainMap {
     }
   }
 
-  const PlanarDomain& domain_;
+  /// Tells of all squares that no edge comes near, which rounding cannot mistake, whether they are inside: by how often
+  /// the line through a row's middle has crossed the domain's edges before.
+  void find_inside(const PlanarDomain& domain) {
+    is_inside_.assign(static_cast<std::size_t>(size_) * size_, 0);
+    const auto middle = [&](Index y) { return lower_.y() + (y + 0.5) / scale_.y(); };
+    for (const auto& loop : domain.loops())
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        Vec2 a = loop[i], b = loop[(i + 1) % loop.size()];
+        if (a.y() > b.y()) std::swap(a, b);
+        for (Index y = row(a.y()); y <= row(b.y()); ++y)
+          if (a.y() <= middle(y) && middle(y) < b.y())
+            is_inside_[place_of(column(a.x() + (middle(y) - a.y()) / (b.y() - a.y()) * (b.x() - a.x())), y)] ^= 1;
+      }
+    for (Index y = 0; y < size_; ++y)
+      for (Index x = 1; x < size_; ++x) is_inside_[place_of(x, y)] ^= is_inside_[place_of(x - 1, y)];
+  }
+
+  std::size_t place_of(Index x, Index y) const { return static_cast<std::size_t>(y) * size_ + x; }
+
   Index size_;
   Vec2 lower_ = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 upper_ = -lower_;
   Vec2 scale_;  ///< squares by length
   std::vector<Index> sums_;
+  std::vector<std::uint8_t> is_inside_;
 };
 
 }  // namespace saddleback::voronoi2d
