@@ -28,9 +28,8 @@ def equal_areas(mesh: Mesh, cells: int) -> _Indices:
     -------
         (F,) int64, 0 to cells - 1.
     """
-    corners = mesh.vertices[mesh.triangles]
-    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    centers, labels = corners.mean(axis=1), np.zeros(len(areas), dtype=np.int64)
+    areas, centers = mesh.face_areas, mesh.vertices[mesh.triangles].mean(axis=1)
+    labels = np.zeros(len(areas), dtype=np.int64)
     parts = [(np.arange(len(areas)), 0, cells)]
     while parts:
         faces, first, count = parts.pop()
@@ -59,7 +58,7 @@ def density_match(mesh: Mesh, placements: Placements, density: ArrayLike, cells:
     Raises
     ------
         InputError: density of the wrong length, negative, not finite or zero everywhere; fewer than two cells, or more
-            than faces.
+            than faces; placements on faces that the mesh does not have.
 
     Notes
     -----
@@ -73,11 +72,15 @@ def density_match(mesh: Mesh, placements: Placements, density: ArrayLike, cells:
     cells = integer(cells, "cells")
     if not 2 <= cells <= len(mesh.triangles):
         raise InputError(f"cells is {cells}, but must be 2 to the number of faces ({len(mesh.triangles)})")
-    corners = mesh.vertices[mesh.triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    labels = equal_areas(mesh, cells)
+    faces = placements.center.faces
+    if len(faces) and faces.max() >= len(mesh.triangles):
+        raise InputError(
+            f"placements: the center of {faces.argmax()} lies in face {faces.max()}, the mesh has {len(mesh.triangles)}"
+        )
+    areas, labels = mesh.face_areas, equal_areas(mesh, cells)
+    painted = painted / painted.max()  # sums of the largest numbers would be more than any
     shares = np.bincount(labels, areas * painted[mesh.triangles].mean(axis=1), minlength=cells)
-    found = np.bincount(labels[placements.center.faces], minlength=cells).astype(np.int64)
+    found = np.bincount(labels[faces], minlength=cells).astype(np.int64)
     wanted = np.asarray(shares * (len(placements) / shares.sum()), dtype=np.float64)
     # Faces cannot be divided: what is left of the difference between the cells' areas must not count, nor cells that
     # large faces have left without any.

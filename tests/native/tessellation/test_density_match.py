@@ -48,6 +48,18 @@ def test_parts_that_large_faces_leave_without_any_do_not_count() -> None:
     assert match.correlation > 0.99 and match.found.sum() == 2000
 
 
+def test_areas_are_those_of_the_mesh_and_only_ratios_count() -> None:
+    mesh = sb.Mesh(*meshes.grid(40, 40))
+    wide = mesh.vertices * [1, 1, 0]
+    wide[:, 0] += 9 * np.maximum(wide[:, 0] - wide[:, 0].mean(), 0)
+    wide = sb.Mesh(wide, mesh.triangles)
+    own = sb.Mesh(mesh.vertices, mesh.triangles, lengths=wide.edge_lengths)
+    even = copies(sb.sample(own, 4000, seed=2))
+    halves = sb.density_match(own, even, np.full(own.vertex_count, 1e308), 2)
+    np.testing.assert_allclose(halves.wanted, 2000, rtol=0.1)
+    np.testing.assert_allclose(halves.found, 2000, rtol=0.1)
+
+
 def test_bad_input() -> None:
     mesh = sb.Mesh(*meshes.grid())
     one = copies(sb.SurfacePoints([3], [[1, 0, 0]]))
@@ -56,3 +68,5 @@ def test_bad_input() -> None:
             sb.density_match(mesh, one, density)
     with pytest.raises(sb.InputError, match="cells is 1"):
         sb.density_match(mesh, one, np.ones(144), 1)
+    with pytest.raises(sb.InputError, match="placements: the center of 0 lies in face 500"):
+        sb.density_match(mesh, copies(sb.SurfacePoints([500], [[1, 0, 0]])), np.ones(144))
