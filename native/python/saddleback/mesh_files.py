@@ -130,11 +130,14 @@ def write_curves(path: _Path, curves: Iterable[Any]) -> None:
 
 def _surface(mesh: Any) -> _Surface:
     if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
-        return _Surface(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
-    try:
-        vertices, triangles = mesh
-    except (TypeError, ValueError):
-        raise InputError(f"mesh: wanted a Mesh, or vertices and triangles, got a {type(mesh).__name__}") from None
+        vertices, triangles = mesh.vertices, mesh.triangles
+        if hasattr(mesh, "faces") and np.ndim(triangles) == 3:  # of trimesh: places, not indices
+            triangles = mesh.faces
+    else:
+        try:
+            vertices, triangles = mesh
+        except (TypeError, ValueError):
+            raise InputError(f"mesh: wanted a Mesh, or vertices and triangles, got a {type(mesh).__name__}") from None
     surface = _Surface(reals(vertices, "mesh: vertices"), np.asarray(triangles))
     for array, name in ((surface.vertices, "vertices"), (surface.triangles, "triangles")):
         if array.ndim != 2 or array.shape[1] != 3:

@@ -36,10 +36,19 @@ def write_placements(
 
     Raises
     ------
+        InputError: a placement of a shape that there is not, or on a face that the mesh does not have.
         OSError: the file cannot be written; what was there before has not changed.
     """
     name = os.fspath(path)
     kinds = [shapes] if isinstance(shapes, Shape) else list(shapes)
+    for values, count, what in (
+        (placements.shape, len(kinds), "shape"),
+        (placements.center.faces, len(mesh.triangles), "face"),
+    ):
+        if len(values) and values.max() >= count:
+            raise InputError(
+                f"placements: that at [{values.argmax()}] has {what} {values.max()}, but there are {count}"
+            )
     content = {
         "kind": _KIND,
         "vertices": len(mesh.vertices),

@@ -214,6 +214,18 @@ def test_what_is_no_mesh_is_not_written(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_objects_of_others_are_looked_at_before_they_are_written(tmp_path: Path) -> None:
+    sb.write_mesh(tmp_path / "a.ply", MESH.to_trimesh())  # whose `triangles` are places
+    assert is_same_mesh(sb.read_mesh(tmp_path / "a.ply"), MESH)
+    for vertices, triangles, said in (
+        (MESH.vertices, [[0, 1, 9999]], "name vertices beyond"),
+        (MESH.vertices[:, :2], MESH.triangles, r"wanted vertices \(n, 3\)"),
+        (MESH.vertices, lambda: MESH.triangles, r"wanted triangles \(n, 3\)"),
+    ):
+        with pytest.raises(sb.InputError, match=said):
+            sb.write_mesh(tmp_path / "b.ply", SimpleNamespace(vertices=vertices, triangles=triangles))
+
+
 def test_faces_where_there_are_as_many_vertices(tmp_path: Path) -> None:
     torus = sb.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     sb.write_mesh(tmp_path / "a.ply", torus, {"a": [1, 2, 3, 4]}, face_attributes={"b": [5, 6, 7, 8]})

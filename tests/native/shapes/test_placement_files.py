@@ -168,6 +168,15 @@ def test_permissions_are_kept(tmp_path, mesh, laid, mode):
     assert sb.SaddleVertexGraph.load(path, mesh).k == 4
 
 
+def test_what_could_not_be_read_is_not_written(tmp_path, mesh, laid):
+    path = tmp_path / "placements.json"
+    with pytest.raises(sb.InputError, match=r"placements: that at \[1\] has shape 1, but there are 1"):
+        sb.write_placements(path, mesh, SHAPES[0], laid)
+    with pytest.raises(sb.InputError, match=r"placements: that at \[1\] has face 70, but there are 8"):
+        write(path, sb.Mesh(*meshes.grid(3, 3)), laid)
+    assert not path.exists()
+
+
 @posix
 def test_a_new_file_is_as_open_as_others(tmp_path, mesh, laid):
     old = os.umask(0o027)
