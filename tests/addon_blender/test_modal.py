@@ -268,6 +268,7 @@ def test_a_timer_event_goes_on_to_others_but_undo_waits(item):
         (lambda item: setattr(item, "name", "Else"), "was deleted or renamed"),
         (lambda item: setattr(item.data.vertices[0].co, "z", 0.5), "was changed during the run"),
         (lambda item: item.data.clear_geometry(), "was changed during the run"),
+        (lambda item: item.data.flip_normals(), "was changed during the run"),
         (lambda item: setattr(item, "scale", (2, 1, 1)), "was changed during the run"),
         (lambda item: bpy.ops.object.mode_set(mode="EDIT"), "went into Edit Mode"),
         (lambda item: bpy.context.scene.collection.objects.unlink(item), "left the view layer"),

@@ -118,11 +118,13 @@ class Source:
 
 
 def _content(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> str:
-    """A hash of what a run reads of the shape: places, counts and scale."""
+    """A hash of what a run reads of the shape: places, faces and scale."""
     digest = hashlib.blake2b(scale_of(source).tobytes(), digest_size=16)
     with mesh_of(context, source, use_modifiers, has_layers=False) as mesh:
         digest.update(f"{len(mesh.vertices)} {len(mesh.loops)} {len(mesh.polygons)}".encode())
         digest.update(compat.read_positions(mesh).data)
+        digest.update(compat.read_numbers(mesh.polygons, "loop_total").data)
+        digest.update(compat.read_corner_vertices(mesh).data)
     return digest.hexdigest()
 
 
