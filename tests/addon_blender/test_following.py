@@ -129,7 +129,9 @@ class Body:
         shown = item.evaluated_get(depsgraph)
         mesh = shown.to_mesh()
         mesh.calc_loop_triangles()
-        self.triangles = np.array([triangle.vertices for triangle in mesh.loop_triangles])
+        corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+        mesh.loop_triangles.foreach_get("vertices", corners)
+        self.triangles = corners.reshape(-1, 3)
         self.places = moved(shown.matrix_world, positions(mesh))
         rest = np.empty(3 * len(mesh.vertices), np.float32)
         mesh.attributes["rest_position"].data.foreach_get("vector", rest)
@@ -155,12 +157,15 @@ class Body:
         height = np.einsum("ij,ij->i", way, normals)
         return np.column_stack([height, np.linalg.norm(way - height[:, None] * normals, axis=1)])
 
-    def find(self, among, points):
-        """The triangles next to points, and the weights there; vertices are at `among`."""
-        tree = BVHTree.FromPolygons(among.tolist(), self.triangles.tolist())
-        near = [tree.find_nearest(point) for point in points.tolist()]
+    @cached_property
+    def tree_at_rest(self):
+        return BVHTree.FromPolygons(self.rest.tolist(), self.triangles.tolist())
+
+    def find_at_rest(self, points):
+        """The triangles next to points while the body is at rest, and the weights there."""
+        near = [self.tree_at_rest.find_nearest(point) for point in points.tolist()]
         corners = self.triangles[[triangle for _, _, triangle, _ in near]]
-        return corners, barycentric(np.array([place for place, *_ in near]), among[corners])
+        return corners, barycentric(np.array([place for place, *_ in near]), self.rest[corners])
 
 
 def unit(vectors):
@@ -221,7 +226,7 @@ class Watched:
         self.rest, self.offset, self.found = {}, {}, {}
         for output in self.outputs:
             self.rest[output] = mixed(body.rest if use_modifiers else positions(item.data), anchors_of(output))
-            found = body.find(body.rest, self.rest[output])
+            found = body.find_at_rest(self.rest[output])
             self.offset[output] = body.offset(found, points_of(output, depsgraph))
             assert np.linalg.norm(self.offset[output], axis=1).max() < 0.35  # no anchor is far away
 
@@ -232,7 +237,7 @@ class Watched:
         """
         body = Body(self.item if copies is None else copies[self.item], depsgraph)
         if len(body.places) not in self.found:  # where the places at rest are on a body of this level
-            self.found[len(body.places)] = {o: body.find(body.rest, self.rest[o]) for o in self.outputs}
+            self.found[len(body.places)] = {o: body.find_at_rest(self.rest[o]) for o in self.outputs}
         sides = np.diff(body.places[body.triangles], axis=1).transpose(1, 0, 2)
         size = np.sqrt(np.linalg.norm(np.cross(*sides), axis=1).sum() / 2 / CELLS)
         worst = {}
