@@ -4,8 +4,8 @@
 The process runs its own pytest (tests/run_in_blender.py) over tests/addon_blender; its reports arrive one by one and
 are shown, counted and summed up as if they were this session's own, with the Blender's name before the test's.
 
-A Blender runs beside the session's own tests, which keep one core busy as it does; once those are over, two run at a
-time. What they report waits until its turn.
+A Blender runs beside the session's own tests, from before they are collected, and keeps one core busy as they do; once
+those are over, two run at a time. What they report waits until its turn.
 """
 
 from __future__ import annotations
@@ -49,11 +49,16 @@ class SessionsPlugin:
         self.arguments = arguments
         self.sessions: list[BlenderSession] = []
 
-    @pytest.hookimpl(trylast=True)
-    def pytest_collection_modifyitems(self, session: pytest.Session, items: list[pytest.Item]) -> None:
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_collection(self, session: pytest.Session) -> None:
         self.sessions = [
             BlenderSession.from_parent(session, blender=blender, arguments=self.arguments) for blender in self.blenders
         ]
+        if not session.config.option.collectonly:
+            self.start(1)
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         items += self.sessions
 
     def pytest_runtest_logstart(self) -> None:
