@@ -16,11 +16,11 @@ namespace {
 
 using predicates::Loop;
 
-struct Box {
-  Vec2 low, high;
-  bool holds(const Vec2& point) const { return (low.array() <= point.array() && point.array() <= high.array()).all(); }
-  bool holds(const Box& other) const { return holds(other.low) && holds(other.high); }
-};
+using Box = PlanarDomain::Box;
+
+bool holds(const Box& box, const Vec2& point) {
+  return (box.low.array() <= point.array() && point.array() <= box.high.array()).all();
+}
 
 Box box_of(const Loop& loop) {
   Box box{loop[0], loop[0]};
@@ -34,7 +34,7 @@ bool lies_in(const Loop& outer, const Loop& inner) {
   for (const Vec2& corner : inner) {
     const auto passes = [&](std::size_t i) {
       const Vec2 &a = outer[i], &b = outer[(i + 1) % outer.size()];
-      return Box{a.cwiseMin(b), a.cwiseMax(b)}.holds(corner) && predicates::segments_touch(a, b, corner, corner);
+      return holds({a.cwiseMin(b), a.cwiseMax(b)}, corner) && predicates::segments_touch(a, b, corner, corner);
     };
     std::size_t i = 0;
     while (i < outer.size() && !passes(i)) ++i;
@@ -61,15 +61,15 @@ PlanarDomain::PlanarDomain(std::vector<std::vector<Vec2>> loops, const char* arg
   if (const auto meeting = predicates::first_meeting(loops_, true))
     throw InputError(message(argument, ": the edge after corner ", meeting->corner, " of loop ", meeting->loop,
                              " meets the edge after corner ", meeting->other_corner, " of loop ", meeting->other_loop));
-  std::vector<Box> boxes;
-  for (const Loop& loop : loops_) boxes.push_back(box_of(loop));
-  const auto holds = [&](std::size_t outer, std::size_t inner) {
-    return boxes[outer].holds(boxes[inner]) && lies_in(loops_[outer], loops_[inner]);
+  for (const Loop& loop : loops_) boxes_.push_back(box_of(loop));
+  const auto lies_within = [&](std::size_t inner, std::size_t outer) {
+    return holds(boxes_[outer], boxes_[inner].low) && holds(boxes_[outer], boxes_[inner].high) &&
+           lies_in(loops_[outer], loops_[inner]);
   };
   for (std::size_t l = 0; l < loops_.size(); ++l) {
     if ((twice_area(loops_[l]) > 0) != (l == 0)) std::reverse(loops_[l].begin(), loops_[l].end());
     for (std::size_t other = 0; other < l; ++other)
-      if (holds(other, l) != (other == 0) || (other > 0 && holds(l, other)))
+      if (lies_within(l, other) != (other == 0) || (other > 0 && lies_within(other, l)))
         throw InputError(message(argument, ": loop ", l, " is not a hole: it lies ",
                                  other == 0 ? "outside the outline" : message("within or around loop ", other)));
   }
@@ -83,7 +83,7 @@ double PlanarDomain::area() const {
 
 bool PlanarDomain::contains(const Vec2& point) const {
   bool inside = false;
-  for (const auto& loop : loops_) inside ^= is_inside(loop, point);
+  for (std::size_t l = 0; l < loops_.size(); ++l) inside ^= holds(boxes_[l], point) && is_inside(loops_[l], point);
   return inside;
 }
 

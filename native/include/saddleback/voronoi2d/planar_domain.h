@@ -20,12 +20,21 @@ class PlanarDomain {
 
   /// Outline counter-clockwise, holes clockwise.
   std::span<const std::vector<Vec2>> loops() const { return loops_; }
+  /// The least box about each loop.
+  struct Box {
+    Vec2 low, high;
+    bool meets(const Box& other) const {
+      return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+    }
+  };
+  std::span<const Box> boxes() const { return boxes_; }
   double area() const;
-  /// O(m).
+  /// O(loops + corners of those whose box holds the point).
   bool contains(const Vec2& point) const;
 
  private:
   std::vector<std::vector<Vec2>> loops_;
+  std::vector<Box> boxes_;
 };
 
 }  // namespace saddleback

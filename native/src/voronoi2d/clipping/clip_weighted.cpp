@@ -195,6 +195,7 @@ CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, c
   const double largest = low_.cwiseAbs().cwiseMax(high_.cwiseAbs()).maxCoeff();
   if (largest < k_small) unit_ = std::ldexp(1.0, std::min(-std::ilogb(largest), 1000));
   for (const Loop& loop : domain.loops()) scale(loops_.emplace_back(loop), unit_);
+  for (const PlanarDomain::Box& box : domain.boxes()) boxes_.push_back({box.low * unit_, box.high * unit_});
 }
 
 /// Returns more than the distance of a site from any point of the domain, so that outlines may be cut short there.
@@ -265,12 +266,13 @@ std::vector<Loop> CurvedCells::whole(Index site) const {
       break;
   }
   scale(cell, unit_);
+  const PlanarDomain::Box box{low * unit_, high * unit_};
+  const auto is_far = [&](const Vec2& a, const Vec2& b) { return !box.meets({a.cwiseMin(b), a.cwiseMax(b)}); };
   std::vector<Loop> loops;
   std::vector<Chain> chains;
-  for (const Loop& loop : loops_)
-    if (cut_loop(cell, loop, chains, stage_, [](const Vec2&, const Vec2&) { return false; }) &&
-        is_inside(cell, loop[0]))
-      loops.push_back(loop);
+  for (std::size_t l = 0; l < loops_.size(); ++l)
+    if (box.meets(boxes_[l]) && cut_loop(cell, loops_[l], chains, stage_, is_far) && is_inside(cell, loops_[l][0]))
+      loops.push_back(loops_[l]);
   if (!chains.empty()) {
     join_chains(cell, chains, loops);
   } else if (is_in_moved(loops_, cell[0])) {

@@ -34,10 +34,11 @@ class CurvedCells {
   const Voronoi2d& diagram_;
   const DomainMap& map_;
   const JobStage& stage_;
-  double tolerance_, distance_;  ///< of a cell's points from its curves
-  Vec2 low_, high_;              ///< the domain's box
-  std::vector<Loop> loops_;      ///< the domain's, times the unit
-  double unit_ = 1;              ///< a power of two, by which products of tiny coordinates are numbers
+  double tolerance_, distance_;           ///< of a cell's points from its curves
+  Vec2 low_, high_;                       ///< the domain's box
+  std::vector<Loop> loops_;               ///< the domain's, times the unit
+  std::vector<PlanarDomain::Box> boxes_;  ///< of these
+  double unit_ = 1;                       ///< a power of two, by which products of tiny coordinates are numbers
 };
 
 }  // namespace saddleback::voronoi2d

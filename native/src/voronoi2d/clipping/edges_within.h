@@ -58,8 +58,12 @@ class EdgesWithin {
     const DomainMap::Place where = map_.place(a.cwiseMin(b), a.cwiseMax(b));
     if (where == DomainMap::Place::outside) return;
     if (where == DomainMap::Place::inside) return visit(a, b);
+    constexpr double k_margin = 1e-9;  // of the domain's size, more than cuts are rounded by
+    const PlanarDomain::Box box{a.cwiseMin(b).array() - k_margin * reach_, a.cwiseMax(b).array() + k_margin * reach_};
     std::vector<double> cuts{from, to};
-    for (const std::vector<Vec2>& loop : domain_.loops()) {
+    for (std::size_t l = 0; l < domain_.loops().size(); ++l) {
+      if (!domain_.boxes()[l].meets(box)) continue;
+      const std::vector<Vec2>& loop = domain_.loops()[l];
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec2 p = loop[i] - begin, q = loop[(i + 1) % loop.size()] - begin;
         const double at_p = p.dot(across), at_q = q.dot(across);
