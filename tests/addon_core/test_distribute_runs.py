@@ -362,6 +362,18 @@ def test_more_faces_than_memory_has_room_for_are_refused_before_they_are_made(mo
     assert run(make_bent=True, count=40).bent is not None
 
 
+def test_gaps_are_filled_to_as_many_faces_as_memory_has_room_for(monkeypatch):
+    """Parts narrower than the shapes take many times as many small ones as were asked for."""
+    settings = {"count": 80, "overlap": 0.5, "no_crossings": True, "fill_gaps": True}
+    whole = run(arrays=TWO_SHEETS, **settings)
+    faces, copies = len(whole.bent.polygon_copy), len(set(whole.bent.polygon_copy))
+    assert not any("Gaps are left" in line for line in whole.warnings) and copies > 100
+    monkeypatch.setattr(distribute_runs, "MOST_FACES", faces * 3 // 4)
+    fewer = run(arrays=TWO_SHEETS, **settings)
+    assert len(set(fewer.bent.polygon_copy)) < copies and len(fewer.bent.polygon_copy) <= faces * 3 // 4
+    assert fewer.warnings[-1:] == distribute_texts.unfilled(faces * 3 // 4)
+
+
 def test_bent_copies_take_little_more_memory_on_their_way_than_at_its_end():
     run(make_bent=True, count=10)  # what is imported and kept on the way
     tracemalloc.start()

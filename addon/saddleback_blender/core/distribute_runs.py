@@ -26,6 +26,7 @@ from .distribute_texts import (
     refusal,
     told,
     too_small,
+    unfilled,
     warnings_of,
 )
 from .errors import BadInputError
@@ -127,7 +128,12 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         class_counts=counts,
         text=told(laid, counts, settings),
         lines=(*figures(laid, settings.maximal), *made_smaller(whole.smaller), *filled(whole.fillers)),
-        warnings=(*laid.warnings, *warnings_of(laid, mapped, settings), *left_out(whole.missing)),
+        warnings=(
+            *laid.warnings,
+            *warnings_of(laid, mapped, settings),
+            *left_out(whole.missing),
+            *unfilled(MOST_FACES if whole.is_cut_short else 0),
+        ),
         bent=bent,
         bent_anchors=bent_anchors,
         outlines=outlines,
@@ -287,7 +293,7 @@ def _drawn(
     def lay() -> Whole:
         nonlocal bent
         with progress.stage(0.9, "laying shapes over each other") as job:
-            whole = map_whole(order, overlap, clears, fills, job)
+            whole = map_whole(order, overlap, clears, MOST_FACES if fills else 0, job)
         bent = whole.bent
         return replace(whole, bent=None)
 

@@ -103,6 +103,11 @@ def filled(count: int) -> tuple[str, ...]:
     return (f"{lie} where skin would be bare",) if count else ()
 
 
+def unfilled(most: int) -> tuple[str, ...]:
+    """Warns of gaps that are left, since copies in all of them would have more than so many faces, if any."""
+    return (f"Gaps are left: with small shapes in all there would be over {most:,} faces; lay fewer",) if most else ()
+
+
 def left_out(count: int) -> tuple[str, ...]:
     """Warns of shapes that would pass through others however small they were, if any."""
     are = "1 shape is" if count == 1 else f"{count:,} shapes are"

@@ -18,6 +18,7 @@ struct MappedShapes {
   Placements placements;
   MapLimits limits;
   std::vector<MappedShape> mapped;
+  mutable py::object failures;  ///< a dict, once somebody has asked: loops ask for every shape
   mutable std::mutex normals_mutex;
   mutable std::vector<Vec3> found_normals;  ///< empty until somebody asks
   std::mutex mutex;                         ///< of the conformer

@@ -155,11 +155,12 @@ const std::vector<Vec3>& MappedShapes::normals(const Mesh& own) const {
 
 namespace {
 
-py::dict failures_of(const MappedShapes& self) {
+py::object failures_of(const MappedShapes& self) {
+  if (self.failures) return self.failures;
   py::dict result;
   for (std::size_t i = 0; i < self.mapped.size(); ++i)
     if (self.mapped[i].failure != MapFailure::none) result[py::int_(i)] = name_of(self.mapped[i].failure);
-  return result;
+  return self.failures = std::move(result);
 }
 
 py::array stretch_of(const MappedShapes& self) {

@@ -172,7 +172,9 @@ def test_why_shapes_cannot_be_laid() -> None:
     disk = sb.Shape.disk(24)
     sphere, cone = sb.Mesh(*meshes.icosphere(3)), sb.Mesh(*meshes.cone(40, 20, 0.3, 2.0))
     tube, plane = sb.Mesh(*meshes.cylinder(40, 60, 0.2, 6.0)), sb.Mesh(*meshes.grid())
-    assert sb.map_shapes(plane, disk, one(sb.SurfacePoints([0], [[1, 0, 0]]), scale=0.1)).failures == {0: "boundary"}
+    outside = sb.map_shapes(plane, disk, one(sb.SurfacePoints([0], [[1, 0, 0]]), scale=0.1))
+    assert outside.failures == {0: "boundary"}
+    assert outside.failures is outside.failures  # loops ask for every shape
     for mesh, scale in ((tube, 0.8), (sphere, 3.5)):
         center = sb.project(mesh, mesh.vertices[[len(mesh.vertices) // 2]])
         reason = sb.map_shapes(mesh, disk, one(center, scale=scale)).failures[0]

@@ -116,15 +116,16 @@ class Whole:
     smaller: int = 0  # drawn so, to be clear of others
     missing: int = 0  # since no size was
     fillers: int = 0
+    is_cut_short: bool = False  # more fillers would have too many faces
     left_out: tuple[int, ...] = ()  # of all that were mapped
     bent: Bent | None = None  # where they had to be bent to be cleared
 
 
-def map_whole(order: Order, overlap: float, clears: bool, fills: bool, job: Any) -> Whole:
+def map_whole(order: Order, overlap: float, clears: bool, fill_to: int, job: Any) -> Whole:
     """Maps the whole shapes where their footprints were laid, smaller where the surface bends too much for them.
 
     At (1 - overlap) of its size a shape lies within its footprint, which has found its place. Where it `clears` them,
-    no bent copy of one passes through that of another; small ones then fill gaps, if wanted.
+    no bent copy of one passes through that of another; small ones then fill gaps, to that many faces of all at most.
     """
     factor, mapped = _laid_out(order, 1.0 - overlap, job)
     if not clears:
@@ -132,14 +133,14 @@ def map_whole(order: Order, overlap: float, clears: bool, fills: bool, job: Any)
     clear, bent = _cleared(order, factor, order.bend(mapped, job), np.zeros(len(factor), bool), LEAST, 0, job)
     is_out = clear < LEAST
     smaller, missing = int(np.count_nonzero((clear < factor) & ~is_out)), int(np.count_nonzero(is_out))
-    if not fills:
+    if not fill_to:
         mapped = order.map(clear, np.arange(len(clear)), job) if smaller or missing else mapped
-        return Whole(mapped, smaller, missing, 0, tuple(np.flatnonzero(is_out).tolist()), bent)
-    order, factor, is_out, bent = _filled(order, mapped, bent, clear, is_out, job)
+        return Whole(mapped, smaller, missing, left_out=tuple(np.flatnonzero(is_out).tolist()), bent=bent)
+    order, factor, is_out, bent, is_cut_short = _filled(order, mapped, bent, clear, is_out, fill_to, job)
     if smaller or missing or len(factor) > len(clear):
         mapped = order.map(factor, np.arange(len(factor)), job)
     fillers = int(np.count_nonzero(~is_out[len(clear) :]))
-    return Whole(mapped, smaller, missing, fillers, tuple(np.flatnonzero(is_out).tolist()), bent)
+    return Whole(mapped, smaller, missing, fillers, is_cut_short, tuple(np.flatnonzero(is_out).tolist()), bent)
 
 
 def _laid_out(order: Order, least: float, job: Any) -> tuple[Reals, Any]:
@@ -157,9 +158,13 @@ def _laid_out(order: Order, least: float, job: Any) -> tuple[Reals, Any]:
 
 
 def _filled(
-    order: Order, mapped: Any, bent: Bent, factor: Reals, is_out: NDArray[np.bool_], job: Any
-) -> tuple[Order, Reals, NDArray[np.bool_], Bent]:
-    """With small shapes behind where there was bare skin: what was laid, how large, which of them not, the copies."""
+    order: Order, mapped: Any, bent: Bent, factor: Reals, is_out: NDArray[np.bool_], most: int, job: Any
+) -> tuple[Order, Reals, NDArray[np.bool_], Bent, bool]:
+    """With small shapes behind where there was bare skin: what was laid, how large, which of them not, the copies.
+
+    And whether gaps are left, since all would have more than `most` faces: parts narrower than shapes take many.
+    """
+    each = np.array([0 if solid is None else len(solid.offsets) - 1 for solid in order.solids])
     solids = [solid.vertices for solid in order.solids if solid is not None]
     extents = np.array([(*np.ptp(solid[:, :2], axis=0), solid[:, 2].max()) for solid in solids])
     extent = np.append(extents[:, :2].min(axis=0), extents[:, 2].max())
@@ -170,13 +175,15 @@ def _filled(
         fillers = gaps.fillers(share)
         if fillers is None:
             break
+        if each[order.placements.shape].sum() + each[fillers.shape].sum() > most:
+            return order, factor, is_out, bent, True
         own, found = _laid_out(replace(order, placements=fillers), LEAST_FILLER, job)
         known, order = len(factor), replace(order, placements=_joined(order.placements, fillers))
         is_out = np.append(is_out, np.isin(np.arange(len(fillers)), list(found.failures)))
         copies = bent.joined(order.bend(found, job))
         factor, bent = _cleared(order, np.append(factor, own), copies, is_out, LEAST_FILLER, known, job)
         is_out[known:] |= factor[known:] < LEAST_FILLER
-    return order, factor, is_out, bent
+    return order, factor, is_out, bent, False
 
 
 def _joined(first: Any, second: Any) -> Any:
@@ -254,9 +261,13 @@ def _pairs(points: Reals, triangles: Indices, owner: Indices, among: Indices | N
 
 def _near(middle: Reals, reach: Reals, chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
     """(n,) which copies may meet those chosen, given their middles and how far they reach from there."""
-    near = np.zeros(len(middle), bool)
-    for number in chosen:
-        near |= np.linalg.norm(middle - middle[number], axis=1) <= reach + reach[number]
+    near, order = np.zeros(len(middle), bool), np.argsort(middle[:, 0])
+    along, wide = middle[order, 0], reach[chosen] + reach.max(initial=0.0)
+    begins = np.searchsorted(along, middle[chosen, 0] - wide, "left")
+    ends = np.searchsorted(along, middle[chosen, 0] + wide, "right")
+    for number, begin, end in zip(chosen, begins, ends, strict=True):
+        rows = order[begin:end]
+        near[rows] |= np.linalg.norm(middle[rows] - middle[number], axis=1) <= reach[rows] + reach[number]
     return near
 
 
