@@ -4,7 +4,6 @@
 //  - cuda_search: the same fields where options.cuda_device asks for it.
 //  - PointSearch: the distance between two points, led by landmarks.
 //  - nearest_sources (parted_search.h): the nearest of a tessellation's sites for every vertex, by several threads.
-//  - NearestSweep: the same where sites lie close to each other, some dozen vertices or fewer for each.
 //  - tessellation/log_map/relabeling.h: the same where only some of the sites have moved.
 
 #include <algorithm>

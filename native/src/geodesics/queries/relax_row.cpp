@@ -17,6 +17,11 @@ namespace {
 
 constexpr int k_block = 64;
 
+/// Tells for each of the first `count` <= k_block words of a row: bit i tells whether distance + length is no more than
+/// what the target has in `distances`.
+using FindCandidates = std::uint64_t (*)(const ArcCodec& codec, const std::uint64_t* words, int count, double distance,
+                                         const double* distances);
+
 std::uint64_t candidates_portable(const ArcCodec& codec, const std::uint64_t* words, int count, double distance,
                                   const double* distances) {
   std::uint64_t candidates = 0;
@@ -80,20 +85,13 @@ RelaxRow relax_row_portable() { return &relax<candidates_portable>; }
 
 RelaxRow relax_row() {
 #ifdef SADDLEBACK_X86
-  if (find_candidates() == &candidates_avx2) return &relax<candidates_avx2>;
-#endif
-  return relax_row_portable();
-}
-
-FindCandidates find_candidates() {
-#ifdef SADDLEBACK_X86
-  static const FindCandidates best = [] {
+  static const RelaxRow best = [] {
     __builtin_cpu_init();
-    return __builtin_cpu_supports("avx2") ? &candidates_avx2 : &candidates_portable;
+    return __builtin_cpu_supports("avx2") ? &relax<candidates_avx2> : relax_row_portable();
   }();
   return best;
 #else
-  return &candidates_portable;
+  return relax_row_portable();
 #endif
 }
 

@@ -7,13 +7,6 @@
 
 namespace saddleback {
 
-/// Tells for each of the first `count` <= 64 words of a row: bit i tells whether distance + length is no more than what
-/// the target has in `distances`.
-using FindCandidates = std::uint64_t (*)(const ArcCodec& codec, const std::uint64_t* words, int count, double distance,
-                                         const double* distances);
-/// The fastest that this machine runs.
-FindCandidates find_candidates();
-
 /// Nodes whose distance a row has lowered, with it and the one before; at most k_most a call.
 struct LoweredNodes {
   static constexpr int k_most = 256;

@@ -66,13 +66,11 @@ void SiteLabels::label_all(const SeenFromSites& seen, int threads, const JobStag
     cuda_nearest_sources(graph_, cuda_device_, seeds_, stage, distance_, label_);
   } else {
     label_what_is_seen(seen, threads);
-    if (!sweep(threads, stage)) {
-      const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
-        for (Index node = first; node < last; ++node)
-          if (label_[node] != k_none) seeds.push_back({node, label_[node], distance_[node]});
-      };
-      nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
-    }
+    const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
+      for (Index node = first; node < last; ++node)
+        if (label_[node] != k_none) seeds.push_back({node, label_[node], distance_[node]});
+    };
+    nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
   }
   group_all(threads);
 }
@@ -102,15 +100,6 @@ void SiteLabels::label_what_is_seen(const SeenFromSites& sites, int threads) {
       for (std::size_t i = 0; i < seen.arc_count; ++i) offer(seen.nodes[i], site, seen.rounded[i]);
     }
   });
-}
-
-/// Labels by sweeps along the nodes. False where it does not pay, or has not led everywhere.
-bool SiteLabels::sweep(int threads, const JobStage& stage) {
-  constexpr Index k_most_nodes = 32;  // a site: cells of more are found sooner from bucket to bucket
-  if (std::int64_t{k_most_nodes} * site_count() < graph_.mesh().vertex_count()) return false;
-  if (!std::exchange(has_labeled_, true)) return false;  // the tables pay from the second time on
-  if (!sweep_) sweep_.emplace(graph_, threads, stage);
-  return sweep_->run(distance_, label_, stage);
 }
 
 /// Labels anew what was nearest to sites that have moved, and what is nearer to them now.

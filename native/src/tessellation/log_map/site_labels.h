@@ -8,7 +8,6 @@
 #include "saddleback/geodesics/saddle_vertex_graph.h"
 
 #include "geodesics/queries/graph_search_cuda.h"
-#include "geodesics/queries/nearest_sweep.h"
 #include "tessellation/log_map/seen_vertices.h"
 #include "tessellation/log_map/vertex_rings.h"
 
@@ -57,7 +56,6 @@ class SiteLabels {
  private:
   void label_all(const SeenFromSites& seen, int threads, const JobStage& stage);
   void label_what_is_seen(const SeenFromSites& seen, int threads);
-  bool sweep(int threads, const JobStage& stage);
   void label_again(const SeenFromSites& seen, std::span<const Index> moved, const JobStage& stage);
   void group_all(int threads);
   void group_again(std::span<const Index> moving);
@@ -71,9 +69,7 @@ class SiteLabels {
   bool keeps_any_ = false;
   std::vector<Index> bare_;  ///< nodes of sites that are gone
   std::vector<Index> label_;
-  std::vector<double> distance_;  ///< in the graph
-  bool has_labeled_ = false;      ///< and may do so again
-  std::optional<NearestSweep> sweep_;
+  std::vector<double> distance_;           ///< in the graph
   std::vector<Index> nodes_, first_node_;  ///< by label
   FlatSeeds seeds_;                        ///< for a device
 };
