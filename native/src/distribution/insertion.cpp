@@ -12,7 +12,7 @@
 
 #include "saddleback/error.h"
 
-#include "mesh/tables/key_order.h"
+#include "support/key_order.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback::distribution {

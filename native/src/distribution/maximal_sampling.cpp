@@ -17,8 +17,8 @@
 
 #include "distribution/edge_distances.h"
 #include "mesh/tables/hilbert.h"
-#include "mesh/tables/key_order.h"
 #include "mesh/tables/outgoing.h"
+#include "support/key_order.h"
 #include "support/random_numbers.h"
 #include "support/threads/appended.h"
 #include "support/threads/parallel.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "mesh/tables/hilbert.h"
-#include "mesh/tables/key_order.h"
+#include "support/key_order.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {

@@ -21,8 +21,8 @@
 
 #include "mesh/tables/flat_face.h"
 #include "mesh/tables/hilbert.h"
-#include "mesh/tables/key_order.h"
 #include "mesh/tables/outgoing.h"
+#include "support/key_order.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {

@@ -16,7 +16,7 @@
 #include "saddleback/error.h"
 
 #include "mesh/tables/hilbert.h"
-#include "mesh/tables/key_order.h"
+#include "support/key_order.h"
 #include "support/random_numbers.h"
 
 namespace saddleback {

@@ -36,7 +36,7 @@ struct Caller {
                 // Somebody may change the sites meanwhile.
                 const LargeArray<Vec2> own = copy_of(caller.sites, 0, caller.stage.part(0.1, 0.1));
                 for (const Placed& item : curve_order(own, 0, caller.stage.part(0.1, 0.2))) {
-                  *places++ = item.place;
+                  *places++ = item.key;
                   *order++ = item.index;
                 }
               });

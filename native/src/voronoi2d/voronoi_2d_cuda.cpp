@@ -70,7 +70,7 @@ class Caller {
     copy_sites();
     const LargeArray<Placed> items = curve_order(result_.sites, threads_, stage_.part(0.1, 0.2));
     for (std::size_t i = 0; i < items.size(); ++i) {
-      places[i] = items[i].place;
+      places[i] = items[i].key;
       order[i] = items[i].index;
     }
   }

@@ -8,7 +8,7 @@
 #include "geodesics/unfolding/tips.h"
 #include "geodesics/unfolding/unfolding.h"
 #include "mesh/tables/hilbert.h"
-#include "mesh/tables/key_order.h"
+#include "support/key_order.h"
 
 namespace saddleback {
 namespace {

@@ -42,7 +42,7 @@ void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index be
 void CellBlock::make_room(Index more, const JobStage& stage) {
   const std::size_t wanted = size + more;
   if (wanted <= halves.size()) return;
-  for (std::vector<Index>* values : {&halves, &sites, &neighbors, &next_neighbors, &befores}) {
+  for (std::vector<Index>* values : {&halves, &sites, &neighbors, &next_neighbors}) {
     stage.check();
     values->resize(2 * wanted);
   }
@@ -177,12 +177,7 @@ void CellBlock::append_few(Index cell, Index cell_site) {
   copy_few(next, others + least + 1);
   copy_few(next + turned - 1, others);
   next[count - 1] = others[least];
-  Index *const own = sites.data() + start, *const before = befores.data() + start;
-  for (Index i = 0; i < k_few; ++i) {
-    own[i] = cell_site;
-    before[i] = start + i - 1;
-  }
-  before[0] = start + count - 1;
+  std::fill_n(sites.data() + start, k_few, cell_site);
   size = start + count;
 }
 
@@ -195,10 +190,8 @@ void CellBlock::append_any(Index cell_site, bool is_open, const JobStage& stage)
     from = from + 1 == count ? 0 : from + 1;
     next_neighbors[start + i] = any_neighbor_[from];
     sites[start + i] = cell_site;
-    befores[start + i] = start + i - 1;
   });
   if (is_open) next_neighbors[start + count - 1] = k_none;
-  befores[start] = start + count - 1;
   size = start + count;
 }
 

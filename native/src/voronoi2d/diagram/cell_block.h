@@ -40,7 +40,6 @@ class CellBlock {
   std::vector<Index> halves;               ///< by side: from the site, or to it for the last side of an open cell
   std::vector<Index> sites, neighbors;     ///< by side: of either side
   std::vector<Index> next_neighbors;       ///< by side: beyond the next side; k_none after the last of an open cell
-  std::vector<Index> befores;              ///< by side: the one before it
 
  private:
   static constexpr Index k_few = 8;       ///< triangles about most sites

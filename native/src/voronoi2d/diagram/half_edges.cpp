@@ -61,7 +61,6 @@ class Numberer {
         result_(result),
         scratch_(threads_),
         piece_size_(threads_ == 1 ? k_small : k_large),
-        edges_at_once_(threads_ == 1 && sites.count() <= k_few),
         unscale_(1 / sites.scale) {
     const Index count = sites.count();
     for (Index begin = 0; begin < count; begin += piece_size_)
@@ -75,7 +74,6 @@ class Numberer {
     result_.corner_vertices.resize(6 * count);
     result_.side_edges.resize(6 * count);
     result_.vertices.resize(2 * count);
-    if (edges_at_once_) make_room_for_edges(static_cast<Index>(3 * count));
     Counts all;
     if (threads_ == 1) {  // numbers follow without being counted before, and those of lower cells are known
       for (Piece& piece : pieces_) {
@@ -100,8 +98,8 @@ class Numberer {
     result_.vertices.resize(all.vertices);
     LargeArray<Index>().swap(mesh_.corners);
     LargeArray<Index>().swap(mesh_.twins);
-    make_room_for_edges(all.edges);
-    if (edges_at_once_) return;
+    result_.edge_vertices.resize(all.edges);
+    result_.edge_sites.resize(all.edges);
     for_pieces(stage_.part(0.8, 1), [&](Index i, int) {
       const bool is_last = static_cast<std::size_t>(i) + 1 == pieces_.size();
       list_edges(pieces_[i], is_last ? all.edges : pieces_[i + 1].edges);
@@ -113,9 +111,8 @@ class Numberer {
     Index corners = 0, vertices = 0, edges = 0;
   };
   static constexpr Index k_small = 2048,
-                         k_large = 8192;   ///< cells that stay in a core's cache; that outweigh a thread's start
-  static constexpr Index k_ahead = 2048;   ///< sites: about a tile
-  static constexpr Index k_few = 1 << 15;  ///< sites whose edges need not wait until the triangles leave their room
+                         k_large = 8192;  ///< cells that stay in a core's cache; that outweigh a thread's start
+  static constexpr Index k_ahead = 2048;  ///< sites: about a tile
   /// A worker's memory.
   struct alignas(k_apart) Scratch {
     CellBlock cells;
@@ -369,33 +366,7 @@ class Numberer {
       });
     });
     for (Index k = 0; k < scratch.own_side_count; ++k) sides[scratch.own_sides[k]] = at.edges + k;
-    if (edges_at_once_) write_edges(at, scratch);
     at.edges += scratch.own_side_count;
-  }
-
-  void make_room_for_edges(Index count) {
-    result_.edge_vertices.resize(count);
-    result_.edge_sites.resize(count);
-  }
-
-  /// Writes the edges of the block's cells, when the vertices of all lower cells have their numbers.
-  void write_edges(const Counts& at, const Scratch& scratch) {
-    const CellBlock& cells = scratch.cells;
-    const Index *const numbers = result_.corner_vertices.data() + at.corners, *const own = scratch.own_sides.data(),
-                       *const before = cells.befores.data(), *const site = cells.sites.data(),
-                       *const neighbor = cells.neighbors.data(), *const original = sites_.original.data();
-    std::array<Index, 2>*const edge_vertices = result_.edge_vertices.data() + at.edges, *const edge_sites =
-                                                                                            result_.edge_sites.data() +
-                                                                                            at.edges;
-    for (Index k = 0; k < scratch.own_side_count; ++k) {
-      const Index i = own[k];
-      const std::array<Index, 2> ends{numbers[before[i]], numbers[i]}, beside{original[site[i]], original[neighbor[i]]};
-      edge_vertices[k] = ends;
-      edge_sites[k] = beside;
-      if (ends[0] >= 0) continue;
-      std::swap(edge_vertices[k][0], edge_vertices[k][1]);
-      std::swap(edge_sites[k][0], edge_sites[k][1]);
-    }
   }
 
   void resolve(const Piece& piece) {
@@ -459,8 +430,7 @@ class Numberer {
   Numbering& result_;
   std::vector<Scratch> scratch_;
   Index piece_size_;
-  bool edges_at_once_;  ///< as soon as they have a number
-  double unscale_;      ///< of a power of two: exact
+  double unscale_;  ///< of a power of two: exact
   std::vector<Piece> pieces_;
 };
 

@@ -8,13 +8,12 @@
 #include "saddleback/support/large_array.h"
 #include "saddleback/types.h"
 
+#include "support/key_order.h"
+
 namespace saddleback::voronoi2d {
 
 /// A point and where it lies: two bits for each halving of the square about all points.
-struct Placed {
-  std::uint32_t place;
-  Index index;
-};
+using Placed = Keyed<std::uint32_t>;
 
 /// Points along a Hilbert curve, by ascending place; equal points side by side, the smallest index first.
 /// `threads`: 0: all cores. O(n log n). \throw Cancelled

@@ -135,7 +135,7 @@ class Gatherer {
       to_x[i] = site.x() * scale;
       to_y[i] = site.y() * scale;
       original[i] = item.index;
-      places[i] = item.place;
+      places[i] = item.key;
       rank_of[item.index] = static_cast<Index>(i);
     }
     return has_equal;
