@@ -152,6 +152,18 @@ def test_copies_point_along_the_field() -> None:
     assert 0.2 < (along > 0).mean() < 0.8  # lines have two ends, the crescent one
 
 
+def test_strands_that_are_narrower_than_the_shapes_are_soon_given_up() -> None:
+    vertices, triangles = meshes.grid(2, 25)
+    strands = np.concatenate([vertices * (0.004, 0.6, 1) + (0.01 * i, 0, 0) for i in range(50)])
+    mesh = sb.Mesh(strands, np.concatenate([triangles + i * len(vertices) for i in range(50)]))
+    for mode in (0.0, 1.0):
+        result = sb.distribute(mesh, sb.Shape.disk(), 100, size=0.0021, mode=mode)  # 0.0042 wide
+        assert not len(result.placements) and result.stop_reason == "tired"
+        places = mesh.area / (sb.Shape.disk().area * 0.0021**2)
+        assert sum(result.rejections.values()) <= 11 * places  # without a bound it is 200
+    assert len(sb.distribute(mesh, sb.Shape.disk(), 100, size=0.0019).placements) == 100
+
+
 def test_a_gap_is_kept() -> None:
     mesh, field = plane(True)
     for gap in (0.01, 0.05):
