@@ -11,6 +11,13 @@
 
 namespace saddleback::bindings {
 
+/// Vertex normals of a mesh, which all shapes laid on it share while some are left.
+struct SharedNormals {
+  const Mesh* mesh;
+  std::mutex mutex;
+  std::vector<Vec3> found;  ///< empty until somebody asks
+};
+
 /// The shapes with all that they were laid with, so that they can be laid again.
 struct MappedShapes {
   py::object mesh_object, field_object;
@@ -19,9 +26,8 @@ struct MappedShapes {
   MapLimits limits;
   std::vector<MappedShape> mapped;
   mutable py::object failures;  ///< a dict, once somebody has asked: loops ask for every shape
-  mutable std::mutex normals_mutex;
-  mutable std::vector<Vec3> found_normals;  ///< empty until somebody asks
-  std::mutex mutex;                         ///< of the conformer
+  std::shared_ptr<SharedNormals> shared_normals;
+  std::mutex mutex;  ///< of the conformer
   std::unique_ptr<Conformer> conformer;
 
   const Mesh& mesh() const;

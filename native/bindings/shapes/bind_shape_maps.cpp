@@ -131,12 +131,31 @@ Index MappedShapes::laid(const py::object& index) const {
   return i;
 }
 
+namespace {
+
+/// The same for shapes laid on one mesh again and again. Those that share it keep the mesh: no other has its address.
+std::shared_ptr<SharedNormals> normals_for(const Mesh& mesh) {
+  static std::mutex mutex;
+  static std::weak_ptr<SharedNormals> last;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<SharedNormals> result = last.lock();
+  if (!result || result->mesh != &mesh) {
+    result = std::make_shared<SharedNormals>();
+    result->mesh = &mesh;
+    last = result;
+  }
+  return result;
+}
+
+}  // namespace
+
 std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const py::object& shapes,
                                           const py::object& placements, const py::object& field,
                                           const py::object& limits, const py::object& threads, const py::object& job) {
   auto result = std::make_unique<MappedShapes>();
   result->mesh_object = mesh_object;
   const Mesh& mesh = result->mesh();
+  result->shared_normals = normals_for(mesh);
   result->field_object = kept_fields(field);
   result->shapes = as_shapes(shapes, "shapes");
   result->placements = as_placements(placements, mesh, result->shapes.size());
@@ -148,9 +167,9 @@ std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const p
 }
 
 const std::vector<Vec3>& MappedShapes::normals(const Mesh& own) const {
-  const std::lock_guard lock(normals_mutex);
-  if (found_normals.empty()) found_normals = vertex_normals(own);
-  return found_normals;
+  const std::lock_guard lock(shared_normals->mutex);
+  if (shared_normals->found.empty()) shared_normals->found = vertex_normals(own);
+  return shared_normals->found;
 }
 
 namespace {

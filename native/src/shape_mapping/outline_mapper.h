@@ -83,7 +83,7 @@ class OutlineMapper {
   std::vector<Index> given_;  ///< per corner: number of the given edge that begins there
   std::vector<std::size_t> begins_;
   std::vector<Index> touched_;  ///< faces
-  std::vector<std::uint32_t> face_stamps_, inside_stamps_;
+  LargeArray<std::uint32_t> face_stamps_, inside_stamps_;
   std::vector<Index> crossed_;  ///< edges, by their smaller half-edge
   std::uint32_t stamp_ = 0;
   std::size_t settled_ = 0;  ///< vertices of the plane that have been looked at while it was laid

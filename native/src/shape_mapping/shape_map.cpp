@@ -33,7 +33,7 @@ bool is_beyond(const PlaneBox& box, const Vec2& a, const Vec2& b) {
 ShapeMap::ShapeMap(const Mesh& mesh)
     : mesh_(&mesh),
       bend_(std::make_unique<CurveBend>()),
-      nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0}),
+      nodes_(static_cast<std::size_t>(mesh.vertex_count())),
       status_(nodes_.size(), 0) {}
 
 ShapeMap::~ShapeMap() = default;
@@ -230,14 +230,16 @@ bool ShapeMap::is_in(const Vec2& point, Index face) const {
 MapFailure ShapeMap::find(const Vec2& point, Index& face) {
   MapFailure obstacle = MapFailure::fold;
   for (Index step = 0; step < k_most_steps; ++step) {
-    if (is_in(point, face)) return MapFailure::none;
     Index onward = k_none;
+    bool is_inside = true;
     for (Index i = 0; i < 3 && onward == k_none; ++i) {
       const Index h = 3 * face + (i + step) % 3;
       if (is_corner_left(coordinates(mesh_->from(h)), coordinates(mesh_->to(h)), point)) continue;
+      is_inside = false;
       onward = mesh_->twin(h);
       if (onward == k_none) obstacle = MapFailure::boundary;
     }
+    if (is_inside) return MapFailure::none;
     if (onward == k_none) return obstacle;
     face = Mesh::face_of(onward);
     complete(face);

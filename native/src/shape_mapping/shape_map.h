@@ -10,6 +10,7 @@
 
 #include "saddleback/mesh/surface_curve.h"
 #include "saddleback/shape_mapping/surface_outline.h"
+#include "saddleback/support/large_array.h"
 
 namespace saddleback {
 
@@ -124,8 +125,8 @@ class ShapeMap {
 
   const Mesh* mesh_;
   std::unique_ptr<CurveBend> bend_;  ///< of the curve
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> status_;  ///< the stamp of the map that reached the vertex last, and the state by then
+  LargeArray<Node> nodes_;
+  LargeArray<std::uint32_t> status_;  ///< the stamp of the map that reached the vertex last, and the state by then
   std::vector<Index> reached_;
   std::vector<Entry> queue_;
   std::vector<Spoke> spokes_;  ///< of the vertex that was settled last

@@ -64,6 +64,16 @@ def placed(mesh: sb.Mesh, count: int, scale: float, seed: int = 0) -> sb.MappedS
     return sb.map_shapes(mesh, SHAPES, placements)
 
 
+def test_normals_are_those_of_the_mesh_that_shapes_were_laid_on() -> None:
+    """Which others may have been laid on another since, or before on one that is gone."""
+    sphere, torus = sb.Mesh(*meshes.icosphere(3)), sb.Mesh(*meshes.torus(60, 24))
+    solids = [cushion(shape) for shape in SHAPES]
+    alone = [placed(mesh, 4, 0.1).bend(solids).vertices.copy() for mesh in (sphere, torus)]
+    first, second = placed(sphere, 4, 0.1), placed(torus, 4, 0.1)
+    for mapped, expected in ((second, alone[1]), (first, alone[0]), (placed(torus, 4, 0.1), alone[1])):
+        np.testing.assert_array_equal(mapped.bend(solids).vertices, expected)
+
+
 def samples(bent: sb.BentCopies, count: int) -> Floats:
     """Even over the area."""
     rng = np.random.default_rng(1)
