@@ -133,7 +133,7 @@ Index MappedShapes::laid(const py::object& index) const {
 
 namespace {
 
-/// The same for shapes laid on one mesh again and again. Those that share it keep the mesh: no other has its address.
+/// Returns what shapes laid on one mesh again and again share. They keep the mesh: no other has its address.
 std::shared_ptr<SharedNormals> normals_for(const Mesh& mesh) {
   static std::mutex mutex;
   static std::weak_ptr<SharedNormals> last;

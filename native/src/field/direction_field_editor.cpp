@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <span>
 
 #include "saddleback/error.h"
 #include "saddleback/field/direction_field.h"
@@ -39,22 +40,29 @@ void check_options(const DirectionFieldOptions& options, int symmetry) {
     throw InputError("loop_indices: only together with singularities");
 }
 
-/// Angles that the field has when it turns so from the smallest face of each component, and the turns again such that
-/// they fit these to rounding.
+/// Angles that the field has when it turns so (empty: nowhere) from the smallest face of each component.
 std::vector<double> integrate(const Mesh& mesh, const SurfaceConnection& connection, const DualLoops& tree,
-                              int symmetry, std::vector<double>& turns) {
+                              std::span<const double> turns) {
   std::vector<double> angles(mesh.face_count(), 0.0);
   for (const Index f : tree.order) {
     const Index h = tree.entered_by[f];
-    if (h != k_none) angles[f] = std::remainder(angles[Mesh::face_of(h)] + connection.transport[h] + turns[h], k_turn);
-  }
-  const double quantum = k_turn / symmetry;
-  for (const Index h : inner_edges(mesh)) {
-    const Index f = Mesh::face_of(h), g = Mesh::face_of(mesh.twin(h));
-    turns[h] += std::remainder(angles[g] - angles[f] - connection.transport[h] - turns[h], quantum);
-    turns[mesh.twin(h)] = -turns[h];
+    if (h == k_none) continue;
+    const double turn = turns.empty() ? 0 : turns[h];
+    angles[f] = std::remainder(angles[Mesh::face_of(h)] + connection.transport[h] + turn, k_turn);
   }
   return angles;
+}
+
+/// Makes turns fit angles to rounding.
+void fit(const Mesh& mesh, const SurfaceConnection& connection, int symmetry, std::span<const double> angles,
+         std::vector<double>& turns) {
+  for_rows(0, mesh.halfedge_count(), 0, [&](Index h) {
+    const Index twin = mesh.twin(h);
+    if (twin < h) return;
+    const double turn = angles[Mesh::face_of(twin)] - angles[Mesh::face_of(h)] - connection.transport[h] - turns[h];
+    turns[h] += std::remainder(turn, k_turn / symmetry);
+    turns[twin] = -turns[h];
+  });
 }
 
 /// Powers of directions that curvature asks for, their sizes the stiffness that they deserve.
@@ -184,7 +192,8 @@ void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, c
   given = std::move(now_given);
   turns = gentle_turns(wanted, stage.part(0.15, 1));
   stage.check();
-  angles = integrate(mesh, connection, loops, symmetry, turns);
+  angles = integrate(mesh, connection, loops, turns);
+  fit(mesh, connection, symmetry, angles, turns);
   shift.clear();
   units = std::move(wanted);
 }
@@ -283,11 +292,10 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
   if (any_drawn) powers = relax_powers(mesh, graph, springs, k_power_accuracy, stage.part(0, any_free ? 0.4 : 1));
   if (any_free) {
     find_loops(stage);
-    std::vector<double> none(mesh.halfedge_count(), 0.0);
     std::vector<Complex> start(mesh.face_count());
-    const std::vector<double> parallel = integrate(mesh, connection, loops, symmetry, none);
+    const std::vector<double> parallel = integrate(mesh, connection, loops, {});
     for_rows(0, mesh.face_count(), 0, [&](Index f) { start[f] = std::polar(1.0, symmetry * parallel[f]); });
-    std::vector<Complex> smooth = smoothest_powers(mesh, graph, std::move(start), stage.part(any_drawn ? 0.4 : 0, 1));
+    std::vector<Complex> smooth = smoothest_powers(mesh, graph, start, stage.part(any_drawn ? 0.4 : 0, 1));
     std::vector<Complex> unit(mesh.component_count(), Complex(0));  // turns the first face's angle to 0
     for (Index f = 0; f < mesh.face_count(); ++f)
       if (unit[component(f)] == Complex(0)) unit[component(f)] = std::polar(1.0, -std::arg(smooth[f]));

@@ -10,6 +10,7 @@
 
 #include "saddleback/job.h"
 #include "saddleback/mesh/surface_curve.h"
+#include "saddleback/support/large_array.h"
 
 namespace saddleback {
 
@@ -74,7 +75,7 @@ class DirectionField {
   std::vector<double> angles_, turns_;
   /// Angles for each half-edge: of the field at its begin, seen along it and along the edge before it, less the face's
   /// angle.
-  std::vector<double> along_, before_;
+  UnsetArray<double> along_, before_;
   std::vector<Singularity> singularities_;
   std::vector<Index> loop_units_;
   double largest_turn_ = 0;

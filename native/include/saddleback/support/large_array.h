@@ -2,6 +2,7 @@
 // Arrays of many megabytes: in huge pages where the system has them, and not filled before they are written.
 
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -61,5 +62,23 @@ struct LargeAllocator {
 
 template <class T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
+
+/// New elements have no value until they are given one.
+template <class T>
+struct UnsetAllocator : std::allocator<T> {
+  template <class U>
+  void construct(U*) {
+    static_assert(std::is_trivially_copyable_v<U> && std::is_trivially_destructible_v<U>);
+  }
+  template <class U, class... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+  }
+};
+
+/// Numbers in ordinary memory: threads that fill it have the system clear its pages, each a part, and not the one that
+/// makes it all of them.
+template <class T>
+using UnsetArray = std::vector<T, UnsetAllocator<T>>;
 
 }  // namespace saddleback

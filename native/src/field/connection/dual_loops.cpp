@@ -53,6 +53,9 @@ std::vector<Index> loop_through(const Mesh& mesh, const DualLoops& trees, const 
 DualLoops dual_loops(const Mesh& mesh, const FilledSurface& filled) {
   DualLoops result;
   const std::vector<Index> depth = grow_trees(mesh, result);
+  const bool has_handles =
+      std::any_of(filled.components.begin(), filled.components.end(), [](const auto& c) { return c.genus > 0; });
+  if (!has_handles) return result;
   struct Edge {
     Index length, halfedge;
   };
@@ -62,9 +65,6 @@ DualLoops dual_loops(const Mesh& mesh, const FilledSurface& filled) {
     const Index f = Mesh::face_of(h), g = Mesh::face_of(mesh.twin(h));
     if (result.entered_by[g] != h && result.entered_by[f] != mesh.twin(h)) edges.push_back({depth[f] + depth[g], h});
   }
-  const bool has_handles =
-      std::any_of(filled.components.begin(), filled.components.end(), [](const auto& c) { return c.genus > 0; });
-  if (!has_handles) return result;
   std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.length > b.length; });
   DisjointSets forest(filled.node_count);
   for (const Edge& edge : edges) {

@@ -25,11 +25,11 @@ double chart_angle(const Mesh& mesh, Index h) {
 }
 
 SurfaceConnection surface_connection(const Mesh& mesh, const JobStage& stage) {
-  SurfaceConnection result{std::vector<double>(mesh.halfedge_count(), 0.0),
-                           std::vector<double>(mesh.halfedge_count(), 1.0)};
+  SurfaceConnection result{UnsetArray<double>(mesh.halfedge_count()), UnsetArray<double>(mesh.halfedge_count())};
   for_rows(0, mesh.halfedge_count(), 0, [&](Index h) {
     if (h % k_rows_a_block == 0) stage.check();
     const Index twin = mesh.twin(h);
+    if (twin == k_none) result.transport[h] = 0, result.weight[h] = 1;
     if (twin < h) return;
     const double turn = chart_angle(mesh, twin) + std::numbers::pi - chart_angle(mesh, h);
     result.transport[h] = std::remainder(turn, 2 * std::numbers::pi);

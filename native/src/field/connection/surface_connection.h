@@ -1,10 +1,9 @@
 #pragma once
 // The transport of directions from face to face, and the weights of neighboring faces.
 
-#include <vector>
-
 #include "saddleback/job.h"
 #include "saddleback/mesh/mesh.h"
+#include "saddleback/support/large_array.h"
 
 namespace saddleback {
 
@@ -14,11 +13,11 @@ double chart_angle(const Mesh& mesh, Index h);
 struct SurfaceConnection {
   /// Holds for each half-edge, 0 on the boundary: what is added to the angle of a direction in the chart of its face to
   /// have the same direction in the chart of its twin's face (Levi-Civita). Opposite for the twin.
-  std::vector<double> transport;
+  UnsetArray<double> transport;
   /// Holds for each half-edge: length of the dual edge over that of the edge (half the sum of the cotangents), kept
   /// within a factor k_weight_range of 1. Equal for both twins. Indices of fields do not depend on it, only how they
   /// turn.
-  std::vector<double> weight;
+  UnsetArray<double> weight;
 };
 
 /// Slivers and obtuse pairs would make single edges take all turning, or none; well-shaped meshes never come near.

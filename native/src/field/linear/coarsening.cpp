@@ -22,15 +22,15 @@ std::complex<double> transported(const std::complex<double>& entry) { return -st
 
 /// Holds how firmly nodes are tied: the sizes of a matrix' entries, and of each row their sum and the largest.
 struct Ties {
-  std::vector<double> strength, sum, strongest;
+  UnsetArray<double> strength, sum, strongest;
 };
 double size_of(double value) { return std::abs(value); }
 double size_of(const std::complex<double>& value) { return hypotenuse(value.real(), value.imag()); }
 
 template <class Scalar>
 Ties ties_of(const GraphMatrix<Scalar>& matrix, const JobStage& stage) {
-  Ties result{std::vector<double>(matrix.values.size()), std::vector<double>(matrix.size()),
-              std::vector<double>(matrix.size())};
+  Ties result{UnsetArray<double>(matrix.values.size()), UnsetArray<double>(matrix.size()),
+              UnsetArray<double>(matrix.size())};
   for_stretches(matrix.size(), stage, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       double sum = 0, most = 0;
@@ -59,7 +59,7 @@ class Pairing {
  public:
   /// `finer`: sums of the ties that each node has on a finer level, to compare with; zeros: pairs may be tied loosely.
   /// Ties below `weak` of a node's strongest count for nothing.
-  Pairing(const GraphMatrix<Scalar>& matrix, const Ties& ties, std::vector<double> finer, double weak)
+  Pairing(const GraphMatrix<Scalar>& matrix, const Ties& ties, UnsetArray<double> finer, double weak)
       : matrix_(matrix),
         ties_(ties),
         whole_(std::move(finer)),
@@ -86,7 +86,7 @@ class Pairing {
       if (leader_[i] == k_free) place(i, 0, size);
     }
     Aggregates<Scalar> result;
-    std::vector<Index> number(size);
+    UnsetArray<Index> number(size);
     for (Index i = 0; i < size; ++i) {
       if (leader_[i] != i) continue;
       number[i] = result.count();
@@ -139,10 +139,10 @@ class Pairing {
 
   const GraphMatrix<Scalar>& matrix_;
   const Ties& ties_;
-  std::vector<double> whole_;  ///< `finer` of each aggregate, where its leader is
+  UnsetArray<double> whole_;  ///< `finer` of each aggregate, where its leader is
   double weak_;
-  std::vector<Index> leader_, next_;  ///< the node whose aggregate each belongs to; see Aggregates
-  std::vector<Scalar> phase_;
+  UnsetArray<Index> leader_, next_;  ///< the node whose aggregate each belongs to; see Aggregates
+  UnsetArray<Scalar> phase_;
 };
 
 /// Interpolation^H matrix interpolation.
@@ -219,7 +219,7 @@ class Galerkin {
 /// Appends as one step what two steps of pairing do.
 template <class Scalar>
 void append_step(Aggregates<Scalar>& first, const Aggregates<Scalar>& second) {
-  std::vector<Index> leaders(second.count());
+  UnsetArray<Index> leaders(second.count());
   for_rows(0, second.count(), 0, [&](Index a) {
     Index last = k_none;
     second.for_members(a, [&](Index pair) {
@@ -241,12 +241,12 @@ template <class Scalar>
 Coarsening<Scalar> coarsened(const GraphMatrix<Scalar>& matrix, const JobStage& stage) {
   const Ties ties = ties_of(matrix, stage);
   const auto pairs = [&](double weak) {
-    return Pairing<Scalar>(matrix, ties, std::vector<double>(matrix.size(), 0.0), weak).aggregates(stage);
+    return Pairing<Scalar>(matrix, ties, UnsetArray<double>(matrix.size(), 0.0), weak).aggregates(stage);
   };
   Aggregates<Scalar> aggregates = pairs(k_weak);
   if (aggregates.count() > k_stalled * matrix.size()) aggregates = pairs(0);
   const GraphMatrix<Scalar> paired = Galerkin<Scalar>(matrix, aggregates).product(stage);
-  std::vector<double> sums(aggregates.count(), 0.0);
+  UnsetArray<double> sums(aggregates.count(), 0.0);
   for_rows(0, aggregates.count(), 0,
            [&](Index a) { aggregates.for_members(a, [&](Index i) { sums[a] += ties.sum[i]; }); });
   const Aggregates<Scalar> second =

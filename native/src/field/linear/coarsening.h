@@ -12,10 +12,10 @@ namespace saddleback {
 /// Holds what coarsening one level decides: node of the next level and phase of the interpolation.
 template <class Scalar>
 struct Aggregates {
-  std::vector<Index> of;
-  std::vector<Scalar> phase;
-  std::vector<Index> leaders;  ///< the first node of each
-  std::vector<Index> next;     ///< the node that follows in the same one; k_none after the last
+  UnsetArray<Index> of;
+  UnsetArray<Scalar> phase;
+  UnsetArray<Index> leaders;  ///< the first node of each
+  UnsetArray<Index> next;     ///< the node that follows in the same one; k_none after the last
 
   Index count() const { return static_cast<Index>(leaders.size()); }
   template <class Visit>

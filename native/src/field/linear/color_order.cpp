@@ -59,7 +59,7 @@ ColorOrder order_by_color(const GraphMatrix<Scalar>& matrix, const JobStage& sta
   for_stretches(size, stage, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) ++next[begin / k_stretch * count + color[i]];
   });
-  ColorOrder result{{}, std::vector<Index>(size), std::vector<Index>(size)};
+  ColorOrder result{{}, UnsetArray<Index>(size), UnsetArray<Index>(size)};
   Index total = 0;
   for (Index c = 0; c < count; ++c) {
     result.begins.push_back(total);

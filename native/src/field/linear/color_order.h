@@ -12,7 +12,8 @@ namespace saddleback {
 /// Holds an order of nodes in which those of one color come after those of another: ones that are tied to each other
 /// differ in color.
 struct ColorOrder {
-  std::vector<Index> begins, order, place;  ///< of each color; the node at each place; the place of each node
+  std::vector<Index> begins;       ///< of each color
+  UnsetArray<Index> order, place;  ///< the node at each place; the place of each node
 };
 
 /// Colors nodes in their order, each with the first color that is free. The same for any number of threads.

@@ -4,6 +4,7 @@
 #include <complex>
 #include <vector>
 
+#include "saddleback/support/large_array.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -12,10 +13,10 @@ namespace saddleback {
 template <class Scalar>
 struct GraphMatrix {
   using Real = decltype(std::real(Scalar()));
-  std::vector<Index> begins{0};  ///< where each row begins in `columns` and `values`; one more entry closes the last
-  std::vector<Index> columns;
-  std::vector<Scalar> values;
-  std::vector<Real> diagonal;
+  UnsetArray<Index> begins{0};  ///< where each row begins in `columns` and `values`; one more entry closes the last
+  UnsetArray<Index> columns;
+  UnsetArray<Scalar> values;
+  UnsetArray<Real> diagonal;
 
   Index size() const { return static_cast<Index>(diagonal.size()); }
 };
@@ -35,16 +36,16 @@ std::complex<Real> conjugate(const std::complex<Real>& a) {
 }
 
 /// Row i times x, without the diagonal's part.
-template <class Scalar>
-Scalar row_sum(const GraphMatrix<Scalar>& matrix, Index i, const std::vector<Scalar>& x) {
+template <class Scalar, class Vector>
+Scalar row_sum(const GraphMatrix<Scalar>& matrix, Index i, const Vector& x) {
   Scalar sum(0);
   for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) sum += times(matrix.values[k], x[matrix.columns[k]]);
   return sum;
 }
 
 /// Row i times x.
-template <class Scalar>
-Scalar row_product(const GraphMatrix<Scalar>& matrix, Index i, const std::vector<Scalar>& x) {
+template <class Scalar, class Vector>
+Scalar row_product(const GraphMatrix<Scalar>& matrix, Index i, const Vector& x) {
   return matrix.diagonal[i] * x[i] + row_sum(matrix, i, x);
 }
 

@@ -17,8 +17,8 @@ namespace {
 constexpr Index k_coarsest = 120;  // nodes that a dense inverse is cheap for
 constexpr double k_enough = 0.25;  // the K-cycle's second step is left out when the first one gains this much
 
-template <class Scalar>
-double squared_norm(const std::vector<Scalar>& a, int threads) {
+template <class Vector>
+double squared_norm(const Vector& a, int threads) {
   return sums_of_rows<std::array<double, 1>>(static_cast<Index>(a.size()), threads, [&](Index i, auto& sums) {
     sums[0] += static_cast<double>(std::norm(a[i]));
   })[0];
@@ -166,7 +166,7 @@ void MultigridSolver<Scalar>::cycle(std::size_t level, const SmallVector& right,
 
 template <class Scalar>
 void MultigridSolver<Scalar>::solve_coarsest(const SmallVector& right, SmallVector& solution) const {
-  const std::vector<Index>& order = levels_.back().order;
+  const UnsetArray<Index>& order = levels_.back().order;
   const std::size_t size = order.size();
   for (std::size_t i = 0; i < size; ++i) {
     Scalar sum(0);
@@ -222,11 +222,11 @@ void MultigridSolver<Scalar>::solve_level(std::size_t level, Workspace& work, co
 }
 
 template <class Scalar>
-void MultigridSolver<Scalar>::precondition(const std::vector<Scalar>& right, std::vector<Scalar>& result,
-                                           Workspace& work, const JobStage& stage) const {
+void MultigridSolver<Scalar>::precondition(const UnsetArray<Scalar>& right, UnsetArray<Scalar>& result, Workspace& work,
+                                           const JobStage& stage) const {
   const double size = std::sqrt(squared_norm(right, work.threads_));
   const double scale = size > 0 ? 1 / size : 1;  // single precision has room around 1
-  const std::vector<Index>& order = levels_.front().order;
+  const UnsetArray<Index>& order = levels_.front().order;
   const auto count = static_cast<Index>(right.size());
   work.levels_.resize(levels_.size());
   work.right_.resize(count);
@@ -237,18 +237,18 @@ void MultigridSolver<Scalar>::precondition(const std::vector<Scalar>& right, std
 }
 
 template <class Scalar>
-std::vector<Scalar> MultigridSolver<Scalar>::solve_near(const GraphMatrix<Scalar>& matrix,
-                                                        const std::vector<Scalar>& right, std::vector<Scalar> guess,
-                                                        const Accuracy& accuracy, const JobStage& stage,
-                                                        int threads) const {
+std::vector<Scalar> MultigridSolver<Scalar>::solve(const std::vector<Scalar>& right, std::vector<Scalar> guess,
+                                                   const Accuracy& accuracy, const JobStage& stage, int threads) const {
   threads = thread_count(threads);
-  const Index size = matrix.size();
-  std::vector<Scalar> x = std::move(guess), residual = right, step, image(size, Scalar(0)), direction = image;
-  if (x.empty()) {
-    x.assign(size, Scalar(0));
-  } else {
-    for_rows(0, size, threads, [&](Index i) { residual[i] -= row_product(matrix, i, x); });
-  }
+  const Index size = matrix_.size();
+  std::vector<Scalar> x = std::move(guess);
+  UnsetArray<Scalar> residual(size), step, image(size), direction(size);
+  const bool is_guessed = !x.empty();
+  x.resize(size);
+  for_rows(0, size, threads, [&](Index i) {
+    residual[i] = is_guessed ? right[i] - row_product(matrix_, i, x) : right[i];
+    image[i] = direction[i] = 0;
+  });
   Workspace work(threads);
   const double enough = accuracy.residual * accuracy.residual * squared_norm(right, threads);
   const double first = squared_norm(residual, threads);
@@ -266,7 +266,7 @@ std::vector<Scalar> MultigridSolver<Scalar>::solve_near(const GraphMatrix<Scalar
     shared /= energy;
     for_rows(0, size, threads, [&, last = shared](Index i) { direction[i] = step[i] - times(last, direction[i]); });
     energy = sums_of_rows<std::array<double, 1>>(size, threads, [&](Index i, auto& sums) {
-      image[i] = row_product(matrix, i, direction);
+      image[i] = row_product(matrix_, i, direction);
       sums[0] += std::real(times(conjugate(direction[i]), image[i]));
     })[0];
     if (!(energy > 0)) break;

@@ -1,6 +1,7 @@
 #pragma once
 // Linear systems of graphs with up to millions of nodes: aggregation multigrid inside conjugate gradients.
 
+#include <utility>
 #include <vector>
 
 #include "saddleback/job.h"
@@ -31,18 +32,16 @@ class MultigridSolver {
   /// x with matrix x = right; starts from `guess` when it is not empty. About 20 iterations, by several threads (0: all
   /// cores). \throw Cancelled.
   std::vector<Scalar> solve(const std::vector<Scalar>& right, std::vector<Scalar> guess, const Accuracy& accuracy,
-                            const JobStage& stage, int threads = 0) const {
-    return solve_near(matrix_, right, std::move(guess), accuracy, stage, threads);
+                            const JobStage& stage, int threads = 0) const;
+  /// Gives the matrix another diagonal near the own one. Nothing is prepared again: iterations then are some more.
+  void replace_diagonal(UnsetArray<typename GraphMatrix<Scalar>::Real> diagonal) {
+    matrix_.diagonal = std::move(diagonal);
   }
-  /// Solves with another matrix near the own one, as with more on its diagonal: iterations then are some more.
-  std::vector<Scalar> solve_near(const GraphMatrix<Scalar>& matrix, const std::vector<Scalar>& right,
-                                 std::vector<Scalar> guess, const Accuracy& accuracy, const JobStage& stage,
-                                 int threads = 0) const;
 
   /// Room for cycles, used again from one to the next.
   class Workspace;
   /// One cycle: about the solution for that right side, of which only the direction counts.
-  void precondition(const std::vector<Scalar>& right, std::vector<Scalar>& result, Workspace& work,
+  void precondition(const UnsetArray<Scalar>& right, UnsetArray<Scalar>& result, Workspace& work,
                     const JobStage& stage) const;
 
  private:
@@ -55,17 +54,17 @@ class MultigridSolver {
     using Type = std::complex<float>;
   };
   using Small = typename Narrow<Scalar>::Type;
-  using SmallVector = std::vector<Small>;
+  using SmallVector = UnsetArray<Small>;
 
-  struct Level {                      ///< its nodes in the order of their colors
-    std::vector<Index> colors;        ///< where each begins, and where the last one ends
-    std::vector<Index> order, place;  ///< the node that is there, and where a node is
-    GraphMatrix<Small> matrix;        ///< in each row the columns before the diagonal come first
-    std::vector<Index> middles;       ///< where in each row the columns after the diagonal begin
-    std::vector<float> inverse_diagonal;
-    std::vector<Index> aggregate;  ///< node of the next level; k_none for those that smoothing alone solves
-    SmallVector phase;             ///< of the interpolation from there
-    std::vector<Index> member_begins, members;  ///< of each aggregate, without the last color's: no residual is there
+  struct Level {                     ///< its nodes in the order of their colors
+    std::vector<Index> colors;       ///< where each begins, and where the last one ends
+    UnsetArray<Index> order, place;  ///< the node that is there, and where a node is
+    GraphMatrix<Small> matrix;       ///< in each row the columns before the diagonal come first
+    UnsetArray<Index> middles;       ///< where in each row the columns after the diagonal begin
+    UnsetArray<float> inverse_diagonal;
+    UnsetArray<Index> aggregate;               ///< node of the next level; k_none for those that smoothing alone solves
+    SmallVector phase;                         ///< of the interpolation from there
+    UnsetArray<Index> member_begins, members;  ///< of each aggregate, without the last color's: no residual is there
   };
   struct Vectors {  ///< of one level during a cycle
     SmallVector right, solution, residual, rest, first, first_image, second;

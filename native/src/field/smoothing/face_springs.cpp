@@ -88,7 +88,9 @@ GraphMatrix<Complex> power_matrix(const Mesh& mesh, const PowerGraph& graph, con
     return mesh.twin(h) != k_none && stiffness[f] != k_fixed && stiffness[Mesh::face_of(mesh.twin(h))] != k_fixed;
   };
   for_rows(0, count, 0, [&](Index f) {
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) result.begins[f + 1] += joins_free(f, h) ? 1 : 0;
+    Index joined = 0;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) joined += joins_free(f, h) ? 1 : 0;
+    result.begins[f + 1] = joined;
   });
   for (Index f = 0; f < count; ++f) result.begins[f + 1] += result.begins[f];
   result.columns.resize(result.begins.back());

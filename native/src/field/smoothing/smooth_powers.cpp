@@ -13,7 +13,7 @@ namespace saddleback {
 namespace {
 
 using Complex = std::complex<double>;
-using Vector = std::vector<Complex>;
+using Vector = UnsetArray<Complex>;
 using Solver = MultigridSolver<Complex>;
 
 constexpr int k_steps = 40;
@@ -33,12 +33,11 @@ struct Pair {
 class Minimizer {
  public:
   Minimizer(const Mesh& mesh, const PowerGraph& graph, const JobStage& stage)
-      : mesh_(mesh),
-        matrix_(power_matrix(mesh, graph, std::vector<double>(mesh.face_count(), 0.0))),
-        components_(mesh.component_count()) {
+      : mesh_(mesh), components_(mesh.component_count()) {
     std::vector<double> area(components_, 0.0);
     for (Index f = 0; f < mesh.face_count(); ++f) area[component(f)] += mesh.face_area(f);
-    GraphMatrix<Complex> shifted = matrix_;
+    GraphMatrix<Complex> shifted = power_matrix(mesh, graph, std::vector<double>(mesh.face_count(), 0.0));
+    diagonal_ = shifted.diagonal;
     mass_.resize(mesh.face_count());
     for_faces([&](Index f) {
       mass_[f] = mesh.face_area(f) / area[component(f)];
@@ -50,7 +49,7 @@ class Minimizer {
   }
 
   /// Leaves the eigenvector as the current one.
-  void minimize(Vector start, const JobStage& stage) {
+  void minimize(const std::vector<Complex>& start, const JobStage& stage) {
     Solver::Workspace work;
     Vector right(start.size());
     for_faces([&](Index f) { right[f] = mass_[f] * start[f]; });
@@ -69,24 +68,23 @@ class Minimizer {
   /// The eigenvector is all but zero where the surface bends much, and its directions there are noise. Unit length
   /// everywhere and diffusion over the eigenvector's own scale, by turns, leave the singularities that the surface asks
   /// for [viertel2019].
-  Vector even_out(const JobStage& stage) {
+  std::vector<Complex> even_out(const JobStage& stage) {
     // No eigenvalue is below the energy: the prepared matrix lacks no more than half, where the energy is not tiny.
-    GraphMatrix<Complex>& diffusion = matrix_;
-    std::vector<double> share(mass_.size());
+    UnsetArray<double> share(mass_.size());
     for_faces([&](Index f) {
       share[f] = std::max(energy_[component(f)], 1.0) * mass_[f];
-      diffusion.diagonal[f] += share[f];
+      diagonal_[f] += share[f];
     });
-    Vector result = std::move(current_.value);
+    solver_->replace_diagonal(std::move(diagonal_));
+    std::vector<Complex> result(current_.value.begin(), current_.value.end()), right(result.size());
     for (int round = 0; round < k_rounds; ++round) {
-      Vector right(result.size());
       for_faces([&](Index f) {
         const double size = std::abs(result[f]);
         result[f] *= size > 0 ? 1 / size : 0;
         right[f] = share[f] * result[f];
       });
       const JobStage part = stage.part(0.5 * round, 0.5 * (round + 1));
-      result = solver_->solve_near(diffusion, right, std::move(result), k_accuracy, part);
+      result = solver_->solve(right, std::move(result), k_accuracy, part);
     }
     return result;
   }
@@ -110,7 +108,8 @@ class Minimizer {
 
   void take_image(Pair& pair) const {
     pair.image.resize(pair.value.size());
-    for_faces([&](Index f) { pair.image[f] = row_product(matrix_, f, pair.value); });
+    const GraphMatrix<Complex>& ties = solver_->matrix();
+    for_faces([&](Index f) { pair.image[f] = diagonal_[f] * pair.value[f] + row_sum(ties, f, pair.value); });
   }
 
   /// Lists the faces by component, and where among them stretches of one component begin whose sums one thread makes.
@@ -196,8 +195,9 @@ class Minimizer {
     std::vector<std::array<Complex, 3>> factors(components_);
     for (Index c = 0; c < components_; ++c) factors[c] = best_combination(sums[c], count);
     if (!with_last) {
-      last_.value.assign(mass_.size(), Complex(0));
-      last_.image = last_.value;
+      last_.value.resize(mass_.size());
+      last_.image.resize(mass_.size());
+      for_faces([&](Index f) { last_.value[f] = last_.image[f] = 0; });
     }
     for_faces([&](Index f) {
       const auto& factor = factors[component(f)];
@@ -216,9 +216,8 @@ class Minimizer {
   }
 
   const Mesh& mesh_;
-  GraphMatrix<Complex> matrix_;
   Index components_;
-  std::vector<double> mass_;
+  UnsetArray<double> mass_, diagonal_;    ///< the matrix is the solver's, but for what that has more on the diagonal
   std::vector<Index> faces_, stretches_;  // see list_stretches
   std::unique_ptr<Solver> solver_;
   std::vector<double> energy_;
@@ -227,10 +226,10 @@ class Minimizer {
 
 }  // namespace
 
-std::vector<Complex> smoothest_powers(const Mesh& mesh, const PowerGraph& graph, std::vector<Complex> start,
+std::vector<Complex> smoothest_powers(const Mesh& mesh, const PowerGraph& graph, const std::vector<Complex>& start,
                                       const JobStage& stage) {
   Minimizer minimizer(mesh, graph, stage.part(0, 0.1));
-  minimizer.minimize(std::move(start), stage.part(0.1, 0.6));
+  minimizer.minimize(start, stage.part(0.1, 0.6));
   return minimizer.even_out(stage.part(0.6, 1));
 }
 

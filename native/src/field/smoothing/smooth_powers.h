@@ -13,6 +13,7 @@ namespace saddleback {
 /// [knyazev2001], then evened out. As powers of directions, from `start`. About 10 steps and 3 linear systems. \throw
 /// Cancelled.
 std::vector<std::complex<double>> smoothest_powers(const Mesh& mesh, const PowerGraph& graph,
-                                                   std::vector<std::complex<double>> start, const JobStage& stage);
+                                                   const std::vector<std::complex<double>>& start,
+                                                   const JobStage& stage);
 
 }  // namespace saddleback

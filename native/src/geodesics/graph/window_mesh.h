@@ -102,7 +102,7 @@ class FanMesh {
   FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
           std::span<const Index> vertices, int threads, const JobStage& stage);
   WindowMesh waves_;
-  std::vector<double> apex_directions_;
+  LargeArray<double> apex_directions_;
 };
 
 /// Directions of a WindowMesh's edges, counted in sectors of the full angle about their vertex.

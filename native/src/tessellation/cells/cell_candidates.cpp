@@ -26,6 +26,7 @@ void check_components(const Mesh& mesh, const SurfacePoints& sites, const char* 
 
 std::vector<VerticesBeside> one_for_each_thread(CellLogMaps& maps, int threads) {
   std::vector<VerticesBeside> beside;
+  beside.reserve(thread_count(threads));
   for (int i = 0; i < thread_count(threads); ++i) beside.emplace_back(maps);
   return beside;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saddleback/mesh/mesh.h"
+#include "saddleback/support/large_array.h"
 
 #include "tessellation/bisectors/edge_envelope.h"
 #include "tessellation/cells/cell_candidates.h"
@@ -59,8 +60,8 @@ class FaceCandidates {
  protected:
   const FaceTable table_;
   const Index site_count_;
-  std::vector<Index> shared_index_, faces_, first_;
-  std::vector<FaceCandidate> candidates_;
+  LargeArray<Index> shared_index_, faces_, first_;
+  LargeArray<FaceCandidate> candidates_;
 };
 
 /// Candidates of cells that a graph tells. The cells must outlive it.

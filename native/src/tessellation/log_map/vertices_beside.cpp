@@ -8,12 +8,7 @@
 namespace saddleback {
 
 VerticesBeside::VerticesBeside(CellLogMaps& maps)
-    : maps_(maps),
-      labels_(maps.labels()),
-      arcs_(maps.graph().arcs()),
-      placer_(maps),
-      beside_(k_beside),
-      table_(maps.graph().mesh().vertex_count()) {}
+    : maps_(maps), labels_(maps.labels()), arcs_(maps.graph().arcs()), placer_(maps), beside_(k_beside) {}
 
 void VerticesBeside::forget() {
   site_ = k_none;
@@ -24,6 +19,7 @@ void VerticesBeside::place_cell(Index site) {
   site_ = site;
   ++round_;
   answers_.clear();
+  if (table_.empty()) table_.resize(labels_.node_count());  // by the thread that it is for
   const std::vector<Index>& nodes = maps_.seen().of(site).nodes;
   for (std::size_t i = 0; i < nodes.size(); ++i) table_[nodes[i]] = {round_, static_cast<Index>(i)};
   placer_.place(site);
