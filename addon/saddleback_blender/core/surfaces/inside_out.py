@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import native
 from ..requests import Surface
+from ..results import Reals
 
 
 def inside_out_of(surface: Surface) -> list[str]:
@@ -37,9 +39,30 @@ def inside_out_parts(surface: Surface) -> tuple[int, int]:
         np.minimum.at(least, part, corner)
         np.maximum.at(most, part, corner)
     inward &= volume < -1e-6 * np.prod(most - least, axis=1)  # a flat part has no inside; its volume is rounding
-    outer = np.nonzero(is_closed & (volume > 0.0))[0]
-    count = 0
-    for i in np.nonzero(inward)[0]:
-        is_wall = (least[outer] <= least[i]).all(axis=1) & (most[outer] >= most[i]).all(axis=1)
-        count += not is_wall.any()
-    return count, len(volume)
+    outer = is_closed & (volume > 0.0)
+    is_wall = lie_within(least[inward], most[inward], least[outer], most[outer])
+    return int((~is_wall).sum()), len(volume)
+
+
+def lie_within(least: Reals, most: Reals, outer_least: Reals, outer_most: Reals) -> NDArray[np.bool_]:
+    """(n,) whether boxes lie within some outer one: corners (n, 3) and (m, 3). O((n + m) log m), typically.
+
+    Outer boxes are the leaves of a binary tree, halved along one coordinate of their corners after the other.
+    """
+    found = np.zeros(len(least), bool)
+    if not len(outer_least):
+        return found
+    corners = np.hstack([outer_least, -outer_most])  # one lies within another whose numbers are all no larger
+    asked = np.hstack([least, -most])
+    levels = (len(corners) - 1).bit_length()
+    order = np.resize(np.arange(len(corners)), (1, 2**levels))
+    for level in range(levels):
+        along = corners[order, level % 6].argsort(axis=1, kind="stable")
+        order = np.take_along_axis(order, along, axis=1).reshape(2 * len(order), -1)
+    box, node = np.arange(len(asked)), np.zeros(len(asked), np.int64)
+    for level in range(levels + 1):
+        leaves = corners[order.reshape(2**level, -1)]
+        found[box[(leaves.max(axis=1)[node] <= asked[box]).all(axis=1)]] = True  # all of them are around it
+        may = (leaves.min(axis=1)[node] <= asked[box]).all(axis=1) & ~found[box]
+        box, node = np.tile(box[may], 2), np.concatenate([2 * node[may], 2 * node[may] + 1])
+    return found
