@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -36,7 +37,7 @@ class LiveCells:
     def __init__(self, stays: bool = False) -> None:
         self.stays = stays
         self._news = threading.Event()
-        self._painted: Any = None
+        self._painted: deque[Any] = deque(maxlen=1)  # which two threads put and take in one go
         self._used: Reals | None = None
         self._round = 0  # of relaxations, each by a density
         self._newest: LiveStep | None = None
@@ -45,7 +46,7 @@ class LiveCells:
 
     def change_density(self, painted: Any) -> None:
         """Gives what was painted since. The caller then lets the relaxation settle."""
-        self._painted = painted
+        self._painted.append(painted)
         self._news.set()
 
     def keep(self) -> None:
@@ -55,16 +56,16 @@ class LiveCells:
 
     def waits_for_density(self, progress: Progress) -> bool:
         """Waits, where it stays; tells whether there is a new density."""
-        while self.stays and not self._news.wait(LOOK):
+        while self.stays and not self._painted:
             progress.check()
-        return self._news.is_set() and self._painted is not None
+            self._news.wait(LOOK)
+            self._news.clear()
+        return bool(self._painted)
 
     def take_density(self, density_of_paint: Callable[[Any], Reals | None]) -> Reals | None:
         """Returns the new density (n,)."""
-        self._news.clear()
         self._round += 1
-        painted, self._painted = self._painted, None
-        self._used = density_of_paint(painted)
+        self._used = density_of_paint(self._painted.pop())
         return self._used
 
     def density_used(self, first: Reals | None) -> Reals | None:
