@@ -7,6 +7,7 @@ The properties themselves lie in a file a panel.
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import fields
 from typing import Any, TypeVar
 
@@ -440,7 +441,8 @@ def _take(owner: bpy.types.PropertyGroup, told: dict[str, Any]) -> None:
         group = owner if settings_name == SHARED else getattr(owner, settings_name)
         for name, value in values.items():
             if name in group.bl_rna.properties:
-                setattr(group, name, value if _blocks(name) is None else find(_blocks(name), value))
+                with suppress(TypeError):  # another kind of value, or a choice that there is not here
+                    setattr(group, name, value if _blocks(name) is None else find(_blocks(name), value))
 
 
 def register() -> None:

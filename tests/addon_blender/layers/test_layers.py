@@ -10,6 +10,7 @@ from test_tab_rows import told
 from saddleback_blender.bridge.outputs.out_collection import outputs_of
 from saddleback_blender.core.settings import TessellateSettings
 from saddleback_blender.ops.tessellate import SADDLEBACK_OT_tessellate
+from saddleback_blender.props import overrides
 from saddleback_blender.props.layers import active_layer, layers_of
 
 QUICK = {"iterations": 2, "k": 30}
@@ -291,6 +292,36 @@ def test_layers_of_a_library_override_survive_reopening(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=path)
     body = next(item for item in bpy.data.objects if item.override_library is not None and item.name == "Body")
     assert [layer.name for layer in layers_of(body)] == ["Tessellate"]
+
+
+def test_an_override_of_another_version_keeps_what_is_known(tmp_path):
+    """A choice that is unknown here is left out; all after it, and on other objects, is still read."""
+    library = str(tmp_path / "character.blend")
+    for name in ("Arm", "Body"):
+        sphere(name, 2)
+    bpy.data.libraries.write(library, {bpy.data.objects["Arm"], bpy.data.objects["Body"]})
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (there, here):
+        here.objects = there.objects
+    for linked in here.objects:
+        bpy.context.scene.collection.objects.link(linked.override_create(remap_local_usages=True))
+    for item in bpy.context.scene.objects:
+        bpy.context.view_layer.objects.active = item
+        bpy.ops.saddleback.tessellate(count=7, method="LLOYD", dual_faces="QUADS", **QUICK)
+    path = str(tmp_path / "shot.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    own = [item for item in bpy.data.objects if item.override_library is not None]
+    for item in own:
+        text = item.saddleback_override_settings
+        assert '"LLOYD"' in text
+        item.saddleback_override_settings = text.replace('"LLOYD"', '"NEWTON"').replace('"QUADS"', "4.5")
+        item.property_unset("saddleback")
+    overrides.read_texts()
+    for item in own:
+        props = item.saddleback.tessellate
+        assert (props.count, props.method, props.dual_faces) == (7, "LBFGS", "TRIANGLES")
+        assert props.iterations == QUICK["iterations"] and len(layers_of(item)) == 1
 
 
 def test_a_file_without_layers_opens_with_one(tmp_path):
