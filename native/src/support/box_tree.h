@@ -56,6 +56,13 @@ class BoxTree {
     if (!order_.empty() && !other.order_.empty()) visit_parts(all(), other, other.all(), visit);
   }
 
+  /// Calls visit(i) for every box i whose squared distance from a point is less than `most`, or hardly more, roughly
+  /// the nearest first: the visit may lower `most`. O(log n + boxes visited), typically.
+  template <class Visit>
+  void visit_nearest(const Vector& point, const double& most, Visit&& visit) const {
+    if (!order_.empty()) visit_nearest_in(all(), point, most, visit);
+  }
+
   /// The box about all. \pre there are boxes
   const Box<Vector>& whole() const { return nodes_[1]; }
 
@@ -120,6 +127,25 @@ class BoxTree {
     }
   };
   Part all() const { return {1, 0, static_cast<Index>(order_.size())}; }
+
+  static double squared_distance(const Box<Vector>& box, const Vector& point) {
+    return (box.low - point).cwiseMax(point - box.high).cwiseMax(0).squaredNorm();
+  }
+
+  template <class Visit>
+  void visit_nearest_in(const Part& part, const Vector& point, const double& most, Visit&& visit) const {
+    constexpr double k_rounding = 1e-12;
+    const auto is_far = [&](const Box<Vector>& box) { return squared_distance(box, point) * (1 - k_rounding) > most; };
+    if (is_far(nodes_[part.node])) return;
+    if (part.size() <= k_leaf) {
+      for (Index i = part.begin; i < part.end; ++i)
+        if (!is_far(boxes_[i])) visit(order_[i]);
+      return;
+    }
+    const int nearer =
+        squared_distance(nodes_[2 * part.node + 1], point) < squared_distance(nodes_[2 * part.node], point);
+    for (const int side : {nearer, 1 - nearer}) visit_nearest_in(part.half(side), point, most, visit);
+  }
 
   template <class Visit>
   void visit_parts(const Part& part, const BoxTree& other, const Part& of_other, Visit&& visit) const {

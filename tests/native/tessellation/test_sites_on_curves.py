@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from itertools import pairwise
 from typing import Any
 
@@ -105,6 +107,45 @@ def refusal_of(graph: sb.SaddleVertexGraph, **arguments: Any) -> str:
     except sb.InputError as refusal:
         return str(refusal)
     return ""
+
+
+def lines_of_grid(n: int, step: int) -> tuple[sb.Mesh, list[sb.SurfaceCurve]]:
+    """A grid of n x n vertices, and every edge of each step-th row and column between two crossings as a curve."""
+    mesh = sb.Mesh(*meshes.grid(n, n))
+    number = np.arange(n * n).reshape(n, n)
+    rows, columns = number[::step], number[:, ::step]
+    ends = [(rows[:, :-1], rows[:, 1:]), (columns[:-1], columns[1:])]
+    edges = np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in ends]).astype(np.int32)
+    return mesh, sb.feature_curves(mesh, np.pi, edges=edges)
+
+
+def test_free_sites_are_those_of_the_sample_that_are_far_from_curves() -> None:
+    mesh, curves = lines_of_grid(40, 13)
+    found = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=10), count=900, curves=curves, max_iterations=0)
+    places, on_curves = found.sites.positions(mesh), found.held >= 0
+    sampled = sb.sample(mesh, 900, seed=0).positions(mesh)
+    away = np.linalg.norm(sampled[:, None] - places[on_curves], axis=2).min(axis=1)
+    kept = np.sort(np.argsort(away, kind="stable")[on_curves.sum() :])
+    np.testing.assert_allclose(places[~on_curves], sampled[kept], atol=1e-12)
+
+
+def test_many_short_curves_take_about_as_long_as_none() -> None:
+    """Their ends were held against each other one by one: fourteen times as long, and nothing could be stopped."""
+    mesh, curves = lines_of_grid(150, 1)
+    graph, seconds = sb.SaddleVertexGraph(mesh, k=10), []
+    assert len(curves) > 40_000
+    for chosen in ([], curves):
+        begin = time.process_time()
+        sb.centroidal_voronoi(graph, count=70_000, curves=chosen or None, max_iterations=0)
+        seconds.append(time.process_time() - begin)
+    assert seconds[1] < 5 * seconds[0]
+    job = sb.Job()
+    timer = threading.Timer(0.2, job.cancel)
+    timer.start()
+    begin = time.perf_counter()
+    with pytest.raises(sb.Cancelled):
+        sb.centroidal_voronoi(graph, count=70_000, curves=curves, max_iterations=0, job=job)
+    assert time.perf_counter() - begin < 2.0
 
 
 def test_bad_curves() -> None:

@@ -12,6 +12,7 @@
 #include "saddleback/mesh/sample.h"
 
 #include "geodesics/exact/ways_to_face.h"
+#include "support/box_tree.h"
 
 namespace saddleback {
 namespace {
@@ -160,6 +161,7 @@ std::vector<double> HeldSites::bring(SurfacePoints& sites, const JobStage& stage
   std::vector<double> along(any() ? sites.size() : 0);
   for (std::size_t i = 0; i < along.size(); ++i) {
     if (!is_held(i)) continue;
+    stage.check();
     const SurfaceCurve& curve = *curves_[curve_of_[i]];
     along[i] = mesh_.is_intrinsic() ? nearest_along_surface(curve, sites[i], stage.part(0, 0))
                                     : nearest_along(curve, position(mesh_, sites[i]));
@@ -223,17 +225,25 @@ double along_at(const SurfaceCurve& curve, const std::vector<double>& sums, doub
   return segment.start + segment.length * (sum - sums[i]) / (sums[i + 1] - sums[i]);
 }
 
+/// The places of points, as boxes without a size.
+std::vector<Box<Vec3>> boxes_of(const Mesh& mesh, const SurfacePoints& points) {
+  std::vector<Box<Vec3>> boxes;
+  for (const SurfacePoint& point : points) boxes.push_back({position(mesh, point), position(mesh, point)});
+  return boxes;
+}
+
 /// Returns how far points are from the nearest site: squared, in space; along the surface where that does not show it.
 std::vector<double> ranks_by_distance(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points,
                                       const JobStage& stage) {
   if (mesh.is_intrinsic()) return ExactField(mesh, sites, stage).distance_to(points);
-  std::vector<Vec3> places;
-  for (const SurfacePoint& site : sites) places.push_back(position(mesh, site));
+  const std::vector<Box<Vec3>> places = boxes_of(mesh, sites);
+  const BoxTree<Vec3> tree(places, stage);
   std::vector<double> ranks;
   for (const SurfacePoint& point : points) {
+    stage.check();
     const Vec3 place = position(mesh, point);
     double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& site : places) least = std::min(least, (site - place).squaredNorm());
+    tree.visit_nearest(place, least, [&](Index i) { least = std::min(least, (places[i].low - place).squaredNorm()); });
     ranks.push_back(least);
   }
   return ranks;
@@ -284,12 +294,9 @@ double mass_of(const Mesh& mesh, std::span<const double> density) {
 class CurveEnds {
  public:
   /// `sums`: of each curve as `wanted_spacings` has them.
-  CurveEnds(const Mesh& mesh, std::span<const SurfaceCurve* const> curves,
-            const std::vector<std::vector<double>>& sums) {
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      for (const bool is_last : {false, true})
-        ends_.push_back(curves[i]->closed() ? k_none : number(mesh, *curves[i], is_last));
-    }
+  CurveEnds(const Mesh& mesh, std::span<const SurfaceCurve* const> curves, const std::vector<std::vector<double>>& sums,
+            const JobStage& stage) {
+    number_ends(mesh, curves, stage);
     near_.resize(places_.size());
     std::vector<Index> long_curves(places_.size(), 0);
     for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -317,15 +324,32 @@ class CurveEnds {
   static constexpr double k_near = 0.5;  ///< of the distance of neighbors in even cells
   static constexpr double k_far = std::numeric_limits<double>::infinity();
 
-  Index number(const Mesh& mesh, const SurfaceCurve& curve, bool is_last) {
+  /// Gives each end the number of the first place that it is at, else of a new one.
+  void number_ends(const Mesh& mesh, std::span<const SurfaceCurve* const> curves, const JobStage& stage) {
     constexpr double k_same = 1e-9;  // relative to the curve
-    const double along = is_last ? curve.length() : 0;
-    const SurfacePoint place = point_on(segment_at(curve, along), along);
-    const auto same = std::ranges::find_if(
-        places_, [&](const SurfacePoint& other) { return step_length(mesh, place, other) <= k_same * curve.length(); });
-    const auto found = static_cast<Index>(same - places_.begin());
-    if (same == places_.end()) places_.push_back(place);
-    return found;
+    ends_.assign(2 * curves.size(), k_none);
+    SurfacePoints points;
+    for (const SurfaceCurve* curve : curves)
+      for (const double along : {0.0, curve->length()}) points.push_back(point_on(segment_at(*curve, along), along));
+    const std::vector<Box<Vec3>> boxes = mesh.is_intrinsic() ? std::vector<Box<Vec3>>() : boxes_of(mesh, points);
+    const BoxTree<Vec3> tree(boxes, stage);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      stage.check();
+      if (curves[i / 2]->closed()) continue;
+      const double reach = k_same * curves[i / 2]->length();
+      Index found = count();
+      const auto look_at = [&](Index number) {
+        if (number != k_none && number < found && step_length(mesh, points[i], places_[number]) <= reach)
+          found = number;
+      };
+      if (boxes.empty()) {  // places in space say nothing there
+        for (Index number = 0; number < count(); ++number) look_at(number);
+      } else {
+        tree.visit_nearest(boxes[i].low, 2 * reach * reach, [&](Index end) { look_at(ends_[end]); });
+      }
+      if (found == count()) places_.push_back(points[i]);
+      ends_[i] = found;
+    }
   }
 
   /// Searches along short curves, as Dijkstra does.
@@ -366,7 +390,7 @@ HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve
     start.sites.push_back(point_on(segment_at(*curves[curve], along), along));
     start.held.push_back(curve);
   };
-  const CurveEnds ends(mesh, curves, sums);
+  const CurveEnds ends(mesh, curves, sums, stage);
   std::vector<std::uint8_t> is_added(ends.count(), 0);
   for (Index i = 0; i < static_cast<Index>(curves.size()); ++i) {
     const SurfaceCurve& curve = *curves[i];
