@@ -140,6 +140,17 @@ def test_darkness_is_missing_light():
     assert darkness(gray, True, False)[0, 2] == pytest.approx(1 - 0.2140, abs=1e-3)
 
 
+def test_pixels_that_are_no_numbers_are_left_white():
+    """One of them in a render took all sites into the last pixel of the image."""
+    gray = np.full((8, 8, 4), 0.5, np.float32)
+    gray[2, 3, 1], gray[..., 3] = np.nan, 1.0
+    for invert in (False, True):
+        dark = darkness(gray, False, invert)
+        assert dark[2, 3] == 0 and np.delete(dark.ravel(), 19) == pytest.approx(0.5)
+    places = places_by_density(dark, np.zeros(2), np.ones(2), 400, 7, lambda p: np.ones(len(p), bool))
+    assert places.mean(axis=0) == pytest.approx([0.5, 0.5], abs=0.05)
+
+
 def test_large_images_are_averaged():
     pixels = np.zeros((2050, 3, 4))
     pixels[:1026] = 1

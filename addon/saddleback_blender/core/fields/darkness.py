@@ -17,11 +17,14 @@ MOST_TRIES = 200
 
 
 def darkness(pixels: NDArray[np.float32], is_encoded: bool, invert: bool) -> Reals:
-    """(rows, columns, 4) -> (rows, columns) the share of light that is missing; transparent counts as white.
+    """(rows, columns, 4) -> (rows, columns) the share of light that is missing; transparent counts as white, and so do
+    the pixels of a render that are no numbers.
 
     `is_encoded`: the colors are sRGB as in 8-bit images, not linear. The first row stays the first.
     """
-    colors = shrunk(np.clip(pixels.astype(np.float64), 0.0, 1.0))
+    colors = np.clip(pixels.astype(np.float64), 0.0, 1.0)
+    colors[np.isnan(colors).any(axis=2)] = 0.0
+    colors = shrunk(colors)
     if is_encoded:
         colors[:, :, :3] = to_linear(colors[:, :, :3])
     light = colors[:, :, :3] @ LUMINANCE
