@@ -194,6 +194,17 @@ def test_a_ring_joins_at_its_seam():
         assert set(map(tuple, end)) == set(map(tuple, begin))
 
 
+@pytest.mark.parametrize("apart", [0.0, 1e-7])
+def test_an_open_curve_that_ends_where_it_starts_is_a_ring(apart):
+    """A ribbon had a gap of half a width there, or was refused where the ends were off by a rounding."""
+    surface = surface_of(meshes.cylinder(48, 20))
+    closed = ring(surface.vertices[:, 2].mean())
+    opened = Polyline(np.concatenate([closed.points, closed.points[:1] + apart]), False)
+    one, other = lay(surface, (opened,), width=0.5), lay(surface, (closed,), width=0.5)
+    assert one.lengths == pytest.approx(other.lengths, rel=1e-5)
+    assert one.solid.vertices == pytest.approx(other.solid.vertices, abs=1e-5)
+
+
 def test_a_ribbon_follows_a_curve_that_is_cut_off_where_the_surface_ends_in_parts():
     arrays = meshes.merge(meshes.grid(9, 9), (meshes.grid(9, 9)[0] + [2, 0, 0], meshes.grid(9, 9)[1]))
     low, high = arrays[0].min(axis=0), arrays[0].max(axis=0)

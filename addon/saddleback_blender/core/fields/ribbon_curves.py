@@ -7,6 +7,7 @@ curve is taken at places half a width apart, which are brought to the surface an
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..results import Reals
 
 HALVINGS = 3  # of a piece between two places
 FEWEST_PLACES, MOST_PLACES = 8, 1000  # of one curve
+ROUND = 1e-3  # of half the width: a curve whose ends are no farther from each other is drawn all round
 FAR = 0.5  # of the surface's extent: a curve that is nowhere nearer does not belong to it
 
 
@@ -32,7 +34,8 @@ def ribbon_curves(
     """
     sb = native.load()
     found = []
-    for number, curve in enumerate(curves):
+    for number, drawn in enumerate(curves):
+        curve = _round(drawn, radius)
         places = _places(curve, radius)
         points = sb.project(mesh, places)
         nearest = float(np.linalg.norm(points.positions(mesh) - places, axis=1).min())
@@ -61,6 +64,13 @@ def ribbon_curves(
     if not found:
         raise BadInputError(f"'{name}': the curves are single points on the surface; draw longer ones")
     return found
+
+
+def _round(curve: Polyline, radius: float) -> Polyline:
+    """The same, closed where its last point lies on its first, as in drawings of other programs."""
+    ends = curve.points[[0, -1]]
+    is_round = len(curve.points) > 2 and float(np.linalg.norm(ends[1] - ends[0])) <= ROUND * radius
+    return replace(curve, points=curve.points[:-1], closed=True) if is_round and not curve.closed else curve
 
 
 def _places(curve: Polyline, radius: float) -> Reals:
