@@ -43,6 +43,26 @@ def _meet(own: Reals, seen: Reals, found: Indices) -> None:
     found[left] = owner[numbers[len(own) :]]
 
 
+def _told_apart(partner: Indices, triangles: Indices) -> Indices:
+    """The same (V,), where of several vertices at one place, as along seams that are not joined, each has its own.
+
+    An edge from v to u is the mirror of one from u's partner to v's: of the faces on both sides of a seam one has it so
+    and the other not. `triangles` (F, 3), whose vertices all have partners. O(F log F).
+    """
+    place = partner[partner].astype(np.int64)
+    corners = np.unique(triangles)
+    if (place[corners] == corners).all():
+        return partner
+    starts, ends = triangles.ravel(), triangles[:, (1, 2, 0)].ravel()
+    keys, first = np.unique(place[starts] * len(partner) + place[ends], return_index=True)
+    wanted = partner[ends].astype(np.int64) * len(partner) + partner[starts]
+    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    known = np.flatnonzero(keys[at] == wanted)
+    seen, found = first[at[known]], partner.copy()
+    found[starts[known]], found[ends[known]] = ends[seen], starts[seen]
+    return found
+
+
 @dataclass(frozen=True)
 class Mirror:
     """The plane x = 0 of a surface, and what lies to both sides of it."""
@@ -71,6 +91,7 @@ class Mirror:
                 f"'{whole.name}' is not the same to both sides of X: {alone:,} of its {len(vertices):,} vertices have "
                 "no partner there; mirror the mesh (Mesh > Symmetrize), or switch X Mirror off"
             )
+        partner = _told_apart(partner, whole.triangles if whole.used is None else whole.used[whole.triangles])
         side = places[:, 0][part.triangles if part.used is None else part.used[part.triangles]]
         near = SAME_PLACE * float(np.ptp(places, axis=0).max())
         crossing = int(((side > near).any(axis=1) & (side < -near).any(axis=1)).sum())
