@@ -34,9 +34,10 @@ class Cache:
         value = make()
         with self._lock:
             self.builds[key[0]] += 1
-            self._entries[key] = (value, nbytes)
-            self._entries.move_to_end(key)
-            self._trim()
+            if nbytes(value) <= self._limit:  # else all the others would go for nothing
+                self._entries[key] = (value, nbytes)
+                self._entries.move_to_end(key)
+                self._trim()
         return value
 
     def __contains__(self, key: tuple[str, ...]) -> bool:
