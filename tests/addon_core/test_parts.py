@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces parted along barriers are those of the library's own barriers."""
+"""Surfaces parted along barriers are those of the library's own barriers; both sides of surfaces in parts."""
 
 import numpy as np
 import pytest
 
 import saddleback as sb
+from saddleback_blender.core.requests import Surface
+from saddleback_blender.core.surfaces.mirrors import Mirror
 from saddleback_blender.core.surfaces.parts import lonely_edge, part
-from tests.meshes import icosphere
+from tests.meshes import grid, icosphere
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -34,3 +36,28 @@ def test_a_single_edge_within_the_surface_is_lonely():
     assert set(lonely_edge(mesh.triangles, mesh.vertex_count, mesh.edges[:1])) == set(mesh.edges[0].tolist())
     around = mesh.edges[(mesh.edges == mesh.edges[0, 0]).any(axis=1)][:2]
     assert lonely_edge(mesh.triangles, mesh.vertex_count, around) is None
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("side_strips", [False, True])
+def test_vertices_of_seams_that_are_not_joined_have_partners_of_their_own(seed, side_strips):
+    """All but the last at each place got no values on the mirrored side: as after imports, which split UV seams."""
+    vertices, triangles = grid(9, 9)
+    vertices = vertices - vertices.mean(axis=0)
+    middle = vertices[triangles].mean(axis=1)
+    strip = np.digitize(middle[:, 1], [-0.25, 0.25])
+    if side_strips:
+        strip += 3 * (np.abs(middle[:, 0]) > 0.25)
+    numbers, corners = np.unique(strip[:, None] * len(vertices) + triangles, return_inverse=True)
+    order = np.random.default_rng(seed).permutation(len(numbers)).astype(np.int32)
+    places, home = np.empty((len(numbers), 3)), np.empty(len(numbers), np.int64)
+    places[order], home[order] = vertices[numbers % len(vertices)], numbers // len(vertices)
+    whole = Surface("Split", places, order[corners.reshape(-1, 3)], len(places))
+    assert len(places) > len(vertices)
+    mirror = Mirror.of(whole, whole, places, np.eye(3))
+    partner = mirror.partner
+    assert np.array_equal(partner[partner], np.arange(len(places)))
+    np.testing.assert_allclose(places[partner], places * [-1, 1, 1], atol=1e-12)
+    assert np.array_equal(home[partner], home)
+    values = np.where(places[:, 0] >= -1e-9, home + np.abs(places[:, 0]), np.nan)
+    assert mirror.spread(values) == pytest.approx(home + np.abs(places[:, 0]))

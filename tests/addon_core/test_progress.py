@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Several native calls are told as one rising fraction and stopped by one cancel."""
 
+import inspect
+import sys
 from itertools import pairwise
 
 import pytest
 
+from saddleback_blender.core.live_cells import LiveCells
 from saddleback_blender.core.progress import Progress
 
 
@@ -79,3 +82,35 @@ def test_after_a_cancel_no_stage_begins():
         raise AssertionError("the stage began")
     with pytest.raises(StoppedError):
         progress.check()
+
+
+class Waiting:
+    def check(self):
+        raise StoppedError
+
+
+@pytest.mark.parametrize("when", range(len(inspect.getsource(LiveCells.take_density).splitlines())))
+def test_paint_that_comes_while_the_last_one_is_taken_is_not_lost(when):
+    live, left = LiveCells(stays=True), [when]
+
+    def paint(frame, event, _):
+        if event == "line":
+            left[0] -= 1
+            if left[0] == -1:
+                live.change_density("second")
+        return paint
+
+    live.change_density("first")
+    assert live.waits_for_density(Waiting())
+    before = sys.gettrace()
+    sys.settrace(lambda frame, *_: paint if frame.f_code is LiveCells.take_density.__code__ else None)
+    try:
+        taken = live.take_density(str)
+    finally:
+        sys.settrace(before)
+    if left[0] < 0 and taken == "first":
+        assert live.waits_for_density(Waiting()) and live.take_density(str) == "second"
+    with pytest.raises(StoppedError):  # and does not end before it is told to
+        live.waits_for_density(Waiting())
+    live.keep()
+    assert not live.waits_for_density(Waiting())
