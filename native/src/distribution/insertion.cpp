@@ -50,14 +50,23 @@ const char* reason_of(Outcome outcome) {
 }
 
 /// Allows as many candidates in vain as fall on the area of a copy without a gap. With a gap much wider than the shapes
-/// they would be thousands for each place, and every one spreads over all of the surface that the gap does. Without one
-/// few tell: when ten for each place find no room, all the room is, nineteen times in twenty, smaller than 0.3 copies.
-/// Strands of hair that are narrower than the shapes would take millions.
+/// they would be thousands for each place, and every one spreads over all of the surface that the gap does.
 double most_in_vain(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options) {
-  constexpr double k_per_copy = 200, k_without_gap = 10, k_least_places = 1000;
+  constexpr double k_per_copy = 200;
+  if (options.gap <= 0 || options.maximal) return std::numeric_limits<double>::infinity();
+  return k_per_copy * std::max(1.0, mesh.area() / rules.smallest_body_area());
+}
+
+/// Allows fewer that all reach beyond the boundary. When ten for each place find no room, all the room is, nineteen
+/// times in twenty, smaller than 0.3 copies. Strands of hair narrower than the shapes would take millions.
+double most_beyond(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options) {
+  constexpr double k_per_copy = 10, k_least = 10'000;
   if (options.maximal) return std::numeric_limits<double>::infinity();
-  const double places = mesh.area() / rules.smallest_body_area();
-  return options.gap > 0 ? k_per_copy * std::max(1.0, places) : k_without_gap * std::max(k_least_places, places);
+  return std::max(k_least, k_per_copy * mesh.area() / rules.smallest_body_area());
+}
+
+std::size_t rejection_of(Outcome outcome) {
+  return static_cast<std::size_t>(outcome) - static_cast<std::size_t>(Outcome::collision);
 }
 
 }  // namespace
@@ -71,6 +80,7 @@ Insertion::Insertion(const Mesh& mesh, const PlacingRules& rules, const Distribu
       wanted_(options.counts),
       shares_(options.density.empty() ? options.shares : std::vector<double>()),
       most_in_vain_(most_in_vain(mesh, rules, options)),
+      most_beyond_(most_beyond(mesh, rules, options)),
       touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
   for (const Kind& kind : rules.kinds()) inserted_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
   mappers_.resize(static_cast<std::size_t>(threads_));
@@ -84,8 +94,10 @@ bool Insertion::is_any_wanted() const {
 }
 
 bool Insertion::is_hopeless() const {
-  return inserted_in_all_ == 0 &&
-         static_cast<double>(std::accumulate(rejections_.begin(), rejections_.end(), std::int64_t{0})) >= most_in_vain_;
+  if (inserted_in_all_ > 0) return false;
+  const auto all = std::accumulate(rejections_.begin(), rejections_.end(), std::int64_t{0});
+  const std::int64_t beyond = rejections_[rejection_of(Outcome::boundary)];
+  return static_cast<double>(all) >= (beyond == all ? std::min(most_beyond_, most_in_vain_) : most_in_vain_);
 }
 
 double Insertion::share(Index shape) const {
@@ -260,8 +272,7 @@ std::vector<Outcome> Insertion::insert(std::span<const Candidate> candidates, co
         outcome = commit(attempts_[i - begin]);
         ++(outcome == Outcome::laid ? laid : in_vain);
       }
-      if (outcome > Outcome::not_wanted)
-        ++rejections_[static_cast<std::size_t>(outcome) - static_cast<std::size_t>(Outcome::collision)];
+      if (outcome > Outcome::not_wanted) ++rejections_[rejection_of(outcome)];
     }
     make_pending_known();
     if (2 * in_vain > laid) size = std::max(k_least_batch, size / 2);

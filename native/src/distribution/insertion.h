@@ -97,6 +97,7 @@ class Insertion {
   bool are_apart_ = false;  ///< those that lie there already
   std::array<std::int64_t, k_rejection_count> rejections_{};
   double most_in_vain_;                                          ///< candidates on a bare surface
+  double most_beyond_;                                           ///< of these, when all reach beyond the boundary
   mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread
   std::vector<Attempt> attempts_;
   mutable std::vector<std::unique_ptr<LocalLayout>> surroundings_;  ///< one a thread
