@@ -34,6 +34,7 @@ from .direction_field import DIRECTION_FIELD, DIRECTION_FIELD_BEGIN
 from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
 from .kept_sites import SITES
+from .kinds import is_chosen
 from .path import PATH, PATH_BEGIN
 from .region import LAYER_SETTINGS
 from .repair import REPAIR
@@ -274,7 +275,7 @@ def fill_operator(
     left = _left_by_call(group) if called and group is not None else {}
     for name in PROPERTIES[settings_name]:
         home = source.saddleback if name in LAYER_SETTINGS else group
-        if name not in called and home is not None and home.is_property_set(name):
+        if name not in called and home is not None and is_chosen(home, name):
             value = _plain(home, name)
             if name not in left or left[name] != value:
                 setattr(operator, name, value)
@@ -384,7 +385,7 @@ def kept_settings(source: bpy.types.Object, settings_name: str, kind: type[Setti
         **{
             field.name: _plain(group, field.name)
             for field in fields(kind)
-            if _home(group, field.name).is_property_set(field.name)
+            if is_chosen(_home(group, field.name), field.name)
         }
     )
 
@@ -414,8 +415,8 @@ def _told(owner: bpy.types.PropertyGroup) -> dict[str, Any]:
     for kind in kinds:
         group = getattr(owner, kind)
         names = [name for name in (*PROPERTIES[kind], CALL) if name not in LAYER_SETTINGS]
-        told[kind] = {name: _plain(group, name) for name in names if group.is_property_set(name)}
-    shared = {name: getattr(owner, name) for name in LAYER_SETTINGS if owner.is_property_set(name)}
+        told[kind] = {name: _plain(group, name) for name in names if is_chosen(group, name)}
+    shared = {name: getattr(owner, name) for name in LAYER_SETTINGS if is_chosen(owner, name)}
     return told | ({SHARED: shared} if shared else {})
 
 

@@ -115,3 +115,9 @@ def any_look() -> Any:
     """One of all looks."""
     items = tuple((key, found.label, found.description) for key, found in LOOKS.items())
     return choice("Look", "What the object gets", items, next(iter(LOOKS)))
+
+
+def is_chosen(group: bpy.types.PropertyGroup, name: str) -> bool:
+    """Tells whether a value is kept. A choice that another version wrote, and there is not here, reads as "": none."""
+    is_enum = group.bl_rna.properties[name].type == "ENUM"
+    return bool(group.is_property_set(name)) and not (is_enum and getattr(group, name) == "")

@@ -19,6 +19,7 @@ from .. import jobs, rollback
 from ..bridge.outputs.layer_visibility import show_layer
 from ..core.errors import BadInputError
 from ..looks import NO_LOOK
+from .kinds import is_chosen
 from .region import LAYER_SETTINGS
 
 # Of each kind of settings: attributes that it writes, whose names other layers must not have.
@@ -214,7 +215,7 @@ def _copy(old: Any, new: Any) -> None:
 
 
 def _copy_one(old: Any, new: Any, name: str) -> None:
-    if old.is_property_set(name):
+    if is_chosen(old, name):
         setattr(new, name, getattr(old, name))
     elif new.is_property_set(name):
         new.property_unset(name)

@@ -10,7 +10,7 @@ from test_tab_rows import told
 from saddleback_blender.bridge.outputs.out_collection import outputs_of
 from saddleback_blender.core.settings import TessellateSettings
 from saddleback_blender.ops.tessellate import SADDLEBACK_OT_tessellate
-from saddleback_blender.props import overrides
+from saddleback_blender.props import kept_settings, overrides
 from saddleback_blender.props.layers import active_layer, layers_of
 
 QUICK = {"iterations": 2, "k": 30}
@@ -322,6 +322,22 @@ def test_an_override_of_another_version_keeps_what_is_known(tmp_path):
         props = item.saddleback.tessellate
         assert (props.count, props.method, props.dual_faces) == (7, "LBFGS", "TRIANGLES")
         assert props.iterations == QUICK["iterations"] and len(layers_of(item)) == 1
+
+
+@pytest.mark.skipif(bpy.app.version >= (5, 0), reason="scripts cannot write what a newer version would have written")
+def test_choices_that_a_newer_version_wrote_are_as_nobody_had_made_them():
+    """Each run ended in a traceback, and layers could not be changed."""
+    item = sphere("Ball")
+    bpy.ops.saddleback.tessellate(count=20, method="LLOYD", **QUICK)
+    item.saddleback.tessellate["method"] = item.saddleback["region"] = 99
+    assert item.saddleback.tessellate.method == item.saddleback.region == ""
+    bpy.ops.saddleback.layer_duplicate()
+    bpy.ops.saddleback.tessellate()
+    item.saddleback.layer_index = 0
+    assert item.saddleback.tessellate.count == 20
+    bpy.ops.saddleback.tessellate()
+    assert (item.saddleback.tessellate.method, item.saddleback.region) == ("LBFGS", "WHOLE")
+    assert kept_settings(item, "tessellate", TessellateSettings).count == 20
 
 
 def test_a_file_without_layers_opens_with_one(tmp_path):
